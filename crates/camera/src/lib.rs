@@ -1,0 +1,1 @@
+//! Frame sources: image sequences, video files and rig datasets.

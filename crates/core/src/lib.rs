@@ -1,0 +1,33 @@
+//! The vocabulary every Roadwatch crate shares: types, seam traits, camera geometry, the rig, time.
+//!
+//! Nothing here opens a file, reads a clock, waits, or knows ROS. Pixels are corner-based: the centre
+//! of the top-left pixel is (0, 0) and its corner (-0.5, -0.5), so scaling an image by `s` maps a
+//! column `x` to `(x + 0.5) * s - 0.5`.
+
+pub mod camera_model;
+pub mod detection;
+pub mod distortion;
+pub mod frame;
+pub mod location;
+pub mod name;
+pub mod object_class;
+pub mod rig;
+pub mod scene;
+pub mod seam;
+pub mod space;
+pub mod time;
+
+pub use camera_model::{CameraModel, ImageSize, Intrinsics};
+pub use detection::{BoxPx, Detection, Score};
+pub use distortion::Distortion;
+pub use frame::{CameraId, DecodeError, DecodeImage, Frame, Image, PerFrame, Pixels};
+pub use location::{Heading, Located, Location, Method, Oriented, Prior, SizeLwh};
+pub use name::CameraName;
+pub use object_class::ObjectClass;
+pub use rig::{MeasuredFocal, Rig, RigCamera};
+pub use scene::{Scene, SceneObject, Track, TrackId};
+pub use seam::{
+    Clock, DetectError, Detector, FrameSource, Locator, Output, Reidentifier, Sink, SinkError,
+    SourceError,
+};
+pub use time::Timestamp;

@@ -1,0 +1,121 @@
+//! Where an object is: position, covariance, and how we know.
+
+use crate::{
+    detection::Detection,
+    space::{BaseLink, Covariance, Point},
+};
+use std::{fmt, time::Duration};
+
+/// Length, width and height of an object, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SizeLwh {
+    /// Along the heading.
+    pub length_m: f64,
+    /// Across the heading.
+    pub width_m: f64,
+    /// Up.
+    pub height_m: f64,
+}
+
+/// How a location was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Method {
+    /// Triangle similarity with a measured focal value (METHOD.md, eq. 1 and 2).
+    TriangleMeasuredF,
+    /// Triangle similarity with `fy` of the intrinsics (eq. 2).
+    TriangleFy,
+    /// Look-up table (eq. 3-7).
+    Table,
+    /// Bottom edge of the box on the ground plane.
+    Ground,
+}
+
+impl Method {
+    /// Every method, in the order of reports.
+    pub const ALL: [Self; 4] = [
+        Self::TriangleMeasuredF,
+        Self::TriangleFy,
+        Self::Table,
+        Self::Ground,
+    ];
+
+    /// The method's name in configuration, messages and reports.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::TriangleMeasuredF => "triangle_measured_f",
+            Self::TriangleFy => "triangle_fy",
+            Self::Table => "table",
+            Self::Ground => "ground",
+        }
+    }
+
+    /// The method of that name, `None` when there is none.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|method| method.as_str() == name)
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.as_str())
+    }
+}
+
+/// Where one object is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Location {
+    /// Centre of the object's box in base_link, metres.
+    pub position: Point<BaseLink>,
+    /// Covariance of `position`, square metres.
+    pub covariance: Covariance<BaseLink>,
+    /// Component of the camera-to-centre vector along the optical axis, metres.
+    pub depth_m: f64,
+    /// Horizontal distance from the camera's foot to the centre, metres.
+    pub range_m: f64,
+    /// Assumed size of the object.
+    pub size: SizeLwh,
+    /// How it was found.
+    pub method: Method,
+    /// True when this is an earlier location kept because this frame gave none (METHOD.md, section 3).
+    pub held: bool,
+}
+
+/// What earlier frames say about a detection, before it is located.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prior {
+    /// The last location that was measured, not held.
+    pub location: Location,
+    /// The last heading; `None` when none was ever found.
+    pub heading: Option<Heading>,
+    /// Capture time since `location` was measured.
+    pub age: Duration,
+}
+
+/// Which way an object points, in base_link axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Heading {
+    /// About z, counter-clockwise, zero along the vehicle's forward axis (REP-103), radians in -pi..=pi.
+    pub yaw_rad: f64,
+    /// Standard deviation, radians.
+    pub std_dev_rad: f64,
+}
+
+/// A detection with its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Located {
+    /// What was seen.
+    pub detection: Detection,
+    /// Where it is.
+    pub location: Location,
+}
+
+/// A located object with its heading.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Oriented {
+    /// What and where.
+    pub located: Located,
+    /// `None` when nothing says which way it points; never invented.
+    pub heading: Option<Heading>,
+}

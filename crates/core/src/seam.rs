@@ -1,0 +1,147 @@
+//! The seams: one object-safe trait per stage, synchronous, with one required method where one is enough.
+
+use crate::{
+    detection::Detection,
+    frame::{CameraId, DecodeError, Frame, PerFrame},
+    location::{Location, Oriented, Prior},
+    scene::{Scene, Track},
+    time::Timestamp,
+};
+use std::{error::Error, sync::Arc, time::Instant};
+
+type Cause = Box<dyn Error + Send + Sync>;
+
+/// Why a source gave no frame.
+#[derive(Debug, thiserror::Error)]
+pub enum SourceError {
+    /// No frame before the deadline; ask again.
+    #[error("no frame before the deadline")]
+    Timeout,
+    /// The device or stream went away; asking again tries to reconnect.
+    #[error("camera disconnected")]
+    Disconnected(#[source] Cause),
+    /// One frame was lost or damaged in the source; the next may be fine.
+    #[error("frame lost")]
+    FrameLost(#[source] Cause),
+    /// The recording is over; asking again gives the same answer.
+    #[error("end of recording")]
+    EndOfStream,
+}
+
+/// A camera, a file or a topic that frames come from. Each lives on a thread of its own.
+pub trait FrameSource: Send {
+    /// Waits for the next frame, at most until `deadline`, so that a hung camera never blocks shutdown.
+    ///
+    /// # Errors
+    /// See [`SourceError`].
+    fn next_frame(&mut self, deadline: Instant) -> Result<Frame, SourceError>;
+}
+
+/// Why a frame has no detections.
+#[derive(Debug, thiserror::Error)]
+pub enum DetectError {
+    /// The image could not be decoded.
+    #[error("image not decoded: {0}")]
+    Decode(DecodeError),
+    /// The network failed.
+    #[error("inference failed")]
+    Inference(#[source] Cause),
+}
+
+/// Finds objects in images. Shared by all cameras, and by the lanes of the runner: while one call runs
+/// the network, another prepares its images.
+pub trait Detector: Send + Sync {
+    /// One result per frame, in the same order; a broken image fails alone.
+    fn detect(&self, frames: Vec<Frame>) -> Vec<Result<PerFrame<Detection>, DetectError>>;
+
+    /// The most frames one call takes at an advantage; 1 where the model's batch axis is fixed.
+    fn max_batch(&self) -> usize {
+        1
+    }
+}
+
+/// Says where a detected object is. One per camera; remembers nothing.
+pub trait Locator: Send {
+    /// `None` when neither the box nor the prior gives a location.
+    fn locate(&self, detection: &Detection, prior: Option<&Prior>) -> Option<Location>;
+}
+
+/// Says who is who; the only memory of objects.
+pub trait Reidentifier: Send {
+    /// What earlier frames know about each detection of this frame, in the same order.
+    fn recall(&self, seen: &PerFrame<Detection>) -> Vec<Option<Prior>>;
+
+    /// Takes a frame's objects into memory and gives each its identity.
+    fn commit(&mut self, seen: PerFrame<Oriented>) -> PerFrame<Track>;
+}
+
+/// What the pipeline hands to its sinks.
+#[derive(Clone, Debug)]
+pub enum Output {
+    /// The objects of one frame of one camera; an empty list when nothing was seen.
+    Camera(Arc<PerFrame<Track>>),
+    /// A completed rig round.
+    Scene(Arc<Scene>),
+}
+
+impl Output {
+    /// The camera this came from; `None` for the scene.
+    #[must_use]
+    pub fn camera(&self) -> Option<CameraId> {
+        match self {
+            Self::Camera(tracks) => Some(tracks.frame.camera),
+            Self::Scene(_) => None,
+        }
+    }
+
+    /// Capture time.
+    #[must_use]
+    pub fn stamp(&self) -> Timestamp {
+        match self {
+            Self::Camera(tracks) => tracks.frame.captured_at,
+            Self::Scene(scene) => scene.stamp,
+        }
+    }
+}
+
+/// One output could not be delivered. It is counted and the next is tried.
+#[derive(Debug, thiserror::Error)]
+#[error("{what}")]
+pub struct SinkError {
+    what: String,
+    #[source]
+    cause: Cause,
+}
+
+impl SinkError {
+    /// An error that says what was not delivered, and why.
+    pub fn new(what: impl Into<String>, cause: impl Into<Cause>) -> Self {
+        Self {
+            what: what.into(),
+            cause: cause.into(),
+        }
+    }
+}
+
+/// Somewhere outputs go: ROS 2, a bag, a report. Each lives on a thread of its own.
+pub trait Sink: Send {
+    /// Delivers one output.
+    ///
+    /// # Errors
+    /// When this output is lost; the sink stays usable for the next.
+    fn publish(&mut self, output: &Output) -> Result<(), SinkError>;
+
+    /// Called once after the last output: flush, close, write what must come last.
+    ///
+    /// # Errors
+    /// When what was published before may be incomplete.
+    fn finish(&mut self) -> Result<(), SinkError> {
+        Ok(())
+    }
+}
+
+/// Monotonic time, so that tests can own it.
+pub trait Clock: Send + Sync {
+    /// Now.
+    fn now(&self) -> Instant;
+}

@@ -1,0 +1,1 @@
+//! Detector: letterbox, ONNX session, YOLO heads, non-maximum suppression.

@@ -1,0 +1,1 @@
+//! Distance and location of a detected box, with covariance.

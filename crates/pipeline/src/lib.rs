@@ -1,0 +1,1 @@
+//! Mailbox, stage runner, topology, and counters and latencies per edge.

@@ -1,0 +1,1 @@
+//! Who is who: the only memory of objects.

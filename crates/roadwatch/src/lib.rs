@@ -1,0 +1,1 @@
+//! Real-time multi-camera perception daemon.
