@@ -117,7 +117,12 @@ mod tests {
     fn lens() -> impl Strategy<Value = Distortion> {
         prop_oneof![
             Just(Distortion::None),
-            (-0.3..0.1_f64, -0.02..0.05_f64, -1e-3..1e-3_f64, -1e-3..1e-3_f64)
+            (
+                -0.3..0.1_f64,
+                -0.02..0.05_f64,
+                -1e-3..1e-3_f64,
+                -1e-3..1e-3_f64
+            )
                 .prop_map(|(k1, k2, p1, p2)| Distortion::BrownConrady([
                     k1, k2, p1, p2, 0.0, 0.0, 0.0, 0.0
                 ])),
@@ -142,7 +147,10 @@ mod tests {
 
     #[test]
     fn nothing_behind_the_lens_has_a_pixel() {
-        assert_eq!(model(Distortion::None).project(Point::new(0.0, 0.0, -3.0)), None);
+        assert_eq!(
+            model(Distortion::None).project(Point::new(0.0, 0.0, -3.0)),
+            None
+        );
     }
 
     #[test]
@@ -153,7 +161,10 @@ mod tests {
             height_px: 270,
         });
         let point = Point::new(1.0, 0.5, 7.0);
-        let (a, b) = (full.project(point).expect("seen"), half.project(point).expect("seen"));
+        let (a, b) = (
+            full.project(point).expect("seen"),
+            half.project(point).expect("seen"),
+        );
         assert!(((a.x + 0.5) * 0.5 - 0.5 - b.x).abs() < 1e-9);
         assert!(((a.y + 0.5) * 0.5 - 0.5 - b.y).abs() < 1e-9);
     }

@@ -125,8 +125,7 @@ fn brown_conrady(k: &[f64; 8], p: Vector2<f64>) -> Vector2<f64> {
     let [k1, k2, p1, p2, k3, k4, k5, k6] = *k;
     let (x, y) = (p.x, p.y);
     let r2 = p.norm_squared();
-    let radial =
-        (1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1.0 + r2 * (k4 + r2 * (k5 + r2 * k6)));
+    let radial = (1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1.0 + r2 * (k4 + r2 * (k5 + r2 * k6)));
     Vector2::new(
         x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
         y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y,
@@ -150,8 +149,8 @@ fn invert_fisheye(k: &[f64; 4], distorted: Vector2<f64>) -> Option<Vector2<f64>>
             break;
         }
         let t2 = theta * theta;
-        let slope = 1.0
-            + t2 * (3.0 * k[0] + t2 * (5.0 * k[1] + t2 * (7.0 * k[2] + t2 * 9.0 * k[3])));
+        let slope =
+            1.0 + t2 * (3.0 * k[0] + t2 * (5.0 * k[1] + t2 * (7.0 * k[2] + t2 * 9.0 * k[3])));
         if slope <= 0.0 {
             return None;
         }

@@ -27,7 +27,7 @@ pub use object_class::ObjectClass;
 pub use rig::{MeasuredFocal, Rig, RigCamera};
 pub use scene::{Scene, SceneObject, Track, TrackId};
 pub use seam::{
-    Clock, DetectError, Detector, FrameSource, Locator, Output, Reidentifier, Sink, SinkError,
-    SourceError,
+    Clock, DetectError, Detector, FrameSource, Locator, Output, Perceived, Reidentifier, Sink,
+    SinkError, SourceError,
 };
 pub use time::Timestamp;

@@ -8,7 +8,9 @@ pub struct CameraName(String);
 
 /// A name that ROS 2 would refuse as a topic token.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{0}` cannot name a camera: use letters, digits and single underscores, beginning with a letter")]
+#[error(
+    "`{0}` cannot name a camera: use letters, digits and single underscores, beginning with a letter"
+)]
 pub struct InvalidName(String);
 
 impl CameraName {

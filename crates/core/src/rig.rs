@@ -57,7 +57,9 @@ pub struct RigCamera {
 
 /// The camera looks so steeply up or down that "ahead on the ground" has no direction.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("the optical axis is {angle_deg:.1} degrees from vertical; at least 20 are needed for a direction on the ground")]
+#[error(
+    "the optical axis is {angle_deg:.1} degrees from vertical; at least 20 are needed for a direction on the ground"
+)]
 pub struct LooksVertical {
     /// Angle between the optical axis and the vertical, degrees.
     pub angle_deg: f64,
@@ -178,7 +180,12 @@ mod tests {
 
     #[test]
     fn the_papers_focal_values_follow_from_its_measurement() {
-        for (size_m, expected) in [(1.4, 1964.28), (2.0, 1375.0), (1.55, 1774.19), (1.7, 1617.64)] {
+        for (size_m, expected) in [
+            (1.4, 1964.28),
+            (2.0, 1375.0),
+            (1.55, 1774.19),
+            (1.7, 1617.64),
+        ] {
             let focal = MeasuredFocal::from_known_object(55.0, 50.0, size_m, 1080);
             assert!((focal.focal_px - expected).abs() < 0.01, "{size_m}");
         }

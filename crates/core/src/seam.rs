@@ -75,11 +75,20 @@ pub trait Reidentifier: Send {
     fn commit(&mut self, seen: PerFrame<Oriented>) -> PerFrame<Track>;
 }
 
+/// All that was made of one frame.
+#[derive(Clone, Debug)]
+pub struct Perceived {
+    /// The objects with place and identity; an empty list when nothing was seen.
+    pub tracks: PerFrame<Track>,
+    /// What was detected and has no place: a class without a known size, a box no method can locate.
+    pub unlocated: Vec<Detection>,
+}
+
 /// What the pipeline hands to its sinks.
 #[derive(Clone, Debug)]
 pub enum Output {
-    /// The objects of one frame of one camera; an empty list when nothing was seen.
-    Camera(Arc<PerFrame<Track>>),
+    /// One frame of one camera.
+    Camera(Arc<Perceived>),
     /// A completed rig round.
     Scene(Arc<Scene>),
 }
@@ -89,7 +98,7 @@ impl Output {
     #[must_use]
     pub fn camera(&self) -> Option<CameraId> {
         match self {
-            Self::Camera(tracks) => Some(tracks.frame.camera),
+            Self::Camera(perceived) => Some(perceived.tracks.frame.camera),
             Self::Scene(_) => None,
         }
     }
@@ -98,7 +107,7 @@ impl Output {
     #[must_use]
     pub fn stamp(&self) -> Timestamp {
         match self {
-            Self::Camera(tracks) => tracks.frame.captured_at,
+            Self::Camera(perceived) => perceived.tracks.frame.captured_at,
             Self::Scene(scene) => scene.stamp,
         }
     }

@@ -63,7 +63,9 @@ impl fmt::Display for Timestamp {
 
 /// A stamp that is not a plain decimal number of seconds that fits 64-bit nanoseconds.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{0}` is not a stamp: expected decimal seconds since the Unix epoch, like 1557539956.439383")]
+#[error(
+    "`{0}` is not a stamp: expected decimal seconds since the Unix epoch, like 1557539956.439383"
+)]
 pub struct ParseTimestampError(String);
 
 impl FromStr for Timestamp {
@@ -103,7 +105,15 @@ mod tests {
 
     #[test]
     fn what_is_not_decimal_seconds_is_refused() {
-        for text in ["", ".5", "1e9", "-1.0", "1.2.3", "nan", "99999999999999999999"] {
+        for text in [
+            "",
+            ".5",
+            "1e9",
+            "-1.0",
+            "1.2.3",
+            "nan",
+            "99999999999999999999",
+        ] {
             assert!(text.parse::<Timestamp>().is_err(), "{text}");
         }
     }

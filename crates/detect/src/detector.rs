@@ -1,0 +1,345 @@
+//! The detector of the pipeline: decode, letterbox, network, head, suppression.
+
+use crate::{
+    class_names::COCO_CLASSES,
+    head::Family,
+    letterbox::{Letterbox, Placement, Values},
+    network::{Network, NetworkError, NetworkOptions},
+    nms::{Candidate, suppress},
+    runtime::Runtime,
+    workspace::{Workspace, Workspaces},
+};
+use roadwatch_core::{
+    DetectError, Detection, Detector, Frame, ImageSize, ObjectClass, PerFrame, Score,
+};
+use std::{
+    path::PathBuf,
+    sync::{Arc, Mutex, PoisonError, RwLock},
+};
+
+/// Which detections are wanted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClassFilter {
+    /// Least score, `0.0..=1.0`, of classes without one of their own.
+    pub score_threshold: f32,
+    /// Least scores of single classes.
+    pub class_thresholds: Vec<(String, f32)>,
+    /// The classes wanted; `None` for all.
+    pub allowed: Option<Vec<String>>,
+}
+
+/// Everything about a detector that is a choice.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DetectorOptions {
+    /// The ONNX file.
+    pub model: PathBuf,
+    /// The family it must be; `None` to take what its output says.
+    pub family: Option<Family>,
+    /// Names of its classes; `None` for those in the model's metadata, or COCO's when it has 80.
+    pub class_names: Option<Vec<String>>,
+    /// How it is run.
+    pub network: NetworkOptions,
+    /// What is kept.
+    pub filter: ClassFilter,
+    /// Overlap above which the weaker of two boxes of a class is dropped, `0.0..=1.0`.
+    pub iou_threshold: f32,
+    /// Most detections per frame.
+    pub max_detections: usize,
+}
+
+/// A detector that cannot be built.
+#[derive(Debug, thiserror::Error)]
+pub enum DetectorError {
+    /// The model.
+    #[error(transparent)]
+    Network(#[from] NetworkError),
+    /// The model is of another family than the configuration says.
+    #[error("`{path}` has a {found} head; detector.family says {expected}")]
+    WrongFamily {
+        /// The file.
+        path: PathBuf,
+        /// What the configuration says.
+        expected: Family,
+        /// What the output says.
+        found: Family,
+    },
+    /// Class names are missing or too many.
+    #[error("`{path}` has {classes} classes and {names} names are given: set detector.class_names")]
+    ClassNames {
+        /// The file.
+        path: PathBuf,
+        /// Classes of the output.
+        classes: usize,
+        /// Names known.
+        names: usize,
+    },
+    /// A class in the configuration that the model does not know.
+    #[error("`{name}` is not a class of the model; it knows: {known}")]
+    UnknownClass {
+        /// The name.
+        name: String,
+        /// The model's classes.
+        known: String,
+    },
+}
+
+/// A YOLO network as a [`Detector`]. Calls may overlap: one prepares images while another runs the network.
+pub struct YoloDetector {
+    network: Mutex<Network>,
+    input_size: ImageSize,
+    batch: usize,
+    placement: Placement,
+    values: Values,
+    classes: Vec<ObjectClass>,
+    /// Per class; infinite for classes nobody wants.
+    thresholds: Vec<f32>,
+    iou_threshold: f32,
+    max_detections: usize,
+    letterboxes: RwLock<Vec<Arc<Letterbox>>>,
+    workspaces: Workspaces,
+}
+
+impl YoloDetector {
+    /// Opens the model and checks it against the options.
+    ///
+    /// # Errors
+    /// See [`DetectorError`].
+    pub fn open(runtime: &Runtime, options: &DetectorOptions) -> Result<Self, DetectorError> {
+        let network = Network::open(runtime, &options.model, &options.network)?;
+        let family = network.head().family();
+        if let Some(expected) = options.family.filter(|&expected| expected != family) {
+            return Err(DetectorError::WrongFamily {
+                path: options.model.clone(),
+                expected,
+                found: family,
+            });
+        }
+        let classes = class_names(&network, options)?;
+        let thresholds = thresholds(&classes, &options.filter)?;
+        let (placement, values) = match family {
+            Family::YoloV5 | Family::YoloV8 => (Placement::Centred, Values::RgbUnit),
+            Family::YoloX => (Placement::TopLeft, Values::BgrByte),
+        };
+        Ok(Self {
+            input_size: network.input_size(),
+            batch: network.batch().max(),
+            network: Mutex::new(network),
+            placement,
+            values,
+            classes,
+            thresholds,
+            iou_threshold: options.iou_threshold,
+            max_detections: options.max_detections,
+            letterboxes: RwLock::default(),
+            workspaces: Workspaces::default(),
+        })
+    }
+
+    fn letterbox(&self, image: ImageSize) -> Arc<Letterbox> {
+        let known = |letterboxes: &[Arc<Letterbox>]| {
+            letterboxes
+                .iter()
+                .find(|l| l.image_size() == image)
+                .cloned()
+        };
+        let letterboxes = self
+            .letterboxes
+            .read()
+            .unwrap_or_else(PoisonError::into_inner);
+        if let Some(found) = known(&letterboxes) {
+            return found;
+        }
+        drop(letterboxes);
+        let new = Arc::new(Letterbox::new(
+            image,
+            self.input_size,
+            self.placement,
+            self.values,
+        ));
+        let mut letterboxes = self
+            .letterboxes
+            .write()
+            .unwrap_or_else(PoisonError::into_inner);
+        letterboxes.push(Arc::clone(&new));
+        new
+    }
+
+    fn prepare(
+        &self,
+        frame: Frame,
+        place: usize,
+        work: &mut Workspace,
+    ) -> Result<Prepared, DetectError> {
+        let pixels = frame
+            .image
+            .pixels()
+            .map_err(|error| DetectError::Decode(error.clone()))?;
+        let letterbox = self.letterbox(pixels.size());
+        let len = Letterbox::input_len(self.input_size);
+        let input = &mut work.input[place * len..(place + 1) * len];
+        letterbox.fill(pixels, input, &mut work.scratch);
+        Ok(Prepared { frame, letterbox })
+    }
+
+    /// Runs the network on the prepared images and leaves the raw boxes of each in `work.raw`.
+    fn infer(&self, images: usize, work: &mut Workspace) -> Result<(), String> {
+        let Workspace {
+            input, raw, best, ..
+        } = work;
+        raw.resize_with(self.batch, Vec::new);
+        let mut network = self.network.lock().unwrap_or_else(PoisonError::into_inner);
+        network
+            .run(input, images, |at, head, output| {
+                raw[at].clear();
+                head.decode(output, &self.thresholds, best, &mut raw[at]);
+            })
+            .map_err(|error| error.to_string())
+    }
+
+    fn select(
+        &self,
+        prepared: Prepared,
+        place: usize,
+        work: &mut Workspace,
+    ) -> PerFrame<Detection> {
+        let candidates = &mut work.candidates;
+        candidates.clear();
+        candidates.extend(work.raw[place].iter().filter_map(|raw| {
+            Some(Candidate {
+                box_px: prepared.letterbox.to_image(raw.corners)?,
+                score: raw.score,
+                class: raw.class,
+            })
+        }));
+        suppress(candidates, self.iou_threshold, self.max_detections);
+        let items = candidates.iter().filter_map(|candidate| {
+            Some(Detection {
+                class: self.classes[usize::from(candidate.class)].clone(),
+                score: Score::new(candidate.score)?,
+                box_px: candidate.box_px,
+            })
+        });
+        PerFrame {
+            items: items.collect(),
+            frame: prepared.frame,
+        }
+    }
+
+    fn detect_batch(
+        &self,
+        frames: Vec<Frame>,
+        work: &mut Workspace,
+    ) -> Vec<Result<PerFrame<Detection>, DetectError>> {
+        work.input
+            .resize(self.batch * Letterbox::input_len(self.input_size), 0.0);
+        let mut images = 0;
+        let prepared: Vec<_> = frames
+            .into_iter()
+            .map(|frame| {
+                let prepared = self.prepare(frame, images, work)?;
+                images += 1;
+                Ok(prepared)
+            })
+            .collect();
+        let inferred = if images > 0 {
+            self.infer(images, work)
+        } else {
+            Ok(())
+        };
+        let mut place = 0;
+        prepared
+            .into_iter()
+            .map(|prepared| {
+                let prepared = prepared?;
+                if let Err(reason) = &inferred {
+                    return Err(DetectError::Inference(reason.clone().into()));
+                }
+                place += 1;
+                Ok(self.select(prepared, place - 1, work))
+            })
+            .collect()
+    }
+}
+
+/// A frame whose image lies in the input.
+struct Prepared {
+    frame: Frame,
+    letterbox: Arc<Letterbox>,
+}
+
+impl Detector for YoloDetector {
+    fn detect(&self, frames: Vec<Frame>) -> Vec<Result<PerFrame<Detection>, DetectError>> {
+        self.workspaces.with(|work| {
+            let mut found = Vec::with_capacity(frames.len());
+            let mut waiting = frames.into_iter();
+            loop {
+                let batch: Vec<_> = waiting.by_ref().take(self.batch).collect();
+                if batch.is_empty() {
+                    return found;
+                }
+                found.extend(self.detect_batch(batch, work));
+            }
+        })
+    }
+
+    fn max_batch(&self) -> usize {
+        self.batch
+    }
+}
+
+fn class_names(
+    network: &Network,
+    options: &DetectorOptions,
+) -> Result<Vec<ObjectClass>, DetectorError> {
+    let classes = network.head().classes();
+    let named = |names: &[String]| names.iter().map(|name| ObjectClass::new(name)).collect();
+    let names: Vec<ObjectClass> = match (&options.class_names, network.class_names()) {
+        (Some(names), _) => named(names),
+        (None, Some(names)) => named(names),
+        (None, None) if classes == COCO_CLASSES.len() => COCO_CLASSES
+            .iter()
+            .map(|name| ObjectClass::new(name))
+            .collect(),
+        (None, None) => Vec::new(),
+    };
+    if names.len() == classes {
+        Ok(names)
+    } else {
+        Err(DetectorError::ClassNames {
+            path: options.model.clone(),
+            classes,
+            names: names.len(),
+        })
+    }
+}
+
+fn thresholds(classes: &[ObjectClass], filter: &ClassFilter) -> Result<Vec<f32>, DetectorError> {
+    let number = |name: &str| {
+        let found = classes.iter().position(|class| class.as_str() == name);
+        found.ok_or_else(|| DetectorError::UnknownClass {
+            name: name.to_owned(),
+            known: classes
+                .iter()
+                .map(ObjectClass::as_str)
+                .collect::<Vec<_>>()
+                .join(", "),
+        })
+    };
+    let mut thresholds = match &filter.allowed {
+        None => vec![filter.score_threshold; classes.len()],
+        Some(allowed) => {
+            let mut thresholds = vec![f32::INFINITY; classes.len()];
+            for name in allowed {
+                thresholds[number(name)?] = filter.score_threshold;
+            }
+            thresholds
+        }
+    };
+    for (name, threshold) in &filter.class_thresholds {
+        let number = number(name)?;
+        if thresholds[number].is_finite() {
+            thresholds[number] = *threshold;
+        }
+    }
+    Ok(thresholds)
+}

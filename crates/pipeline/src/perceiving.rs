@@ -1,0 +1,81 @@
+//! The perceiving thread: the perceiving step, scenes, and handing over to the sinks.
+
+use crate::{
+    detecting::Seen,
+    metrics::{Edge, Metrics},
+    perceive::Perceiver,
+    scene::SceneAssembler,
+    sinking::Fanout,
+};
+use roadwatch_core::{Clock, Output, Scene};
+use std::{
+    sync::{
+        Arc,
+        mpsc::{Receiver, RecvTimeoutError},
+    },
+    time::Duration,
+};
+
+pub(crate) struct Perceiving {
+    pub(crate) perceiver: Perceiver,
+    pub(crate) scenes: SceneAssembler,
+    pub(crate) fanout: Fanout,
+    pub(crate) metrics: Arc<Metrics>,
+    pub(crate) clock: Arc<dyn Clock>,
+}
+
+impl Perceiving {
+    /// Runs until every lane has ended.
+    pub(crate) fn run(mut self, detections: &Receiver<Seen>) {
+        loop {
+            let wait = self.scenes.due_in(self.clock.now());
+            let scene = match receive(detections, wait) {
+                Ok(seen) => self.step(seen),
+                Err(RecvTimeoutError::Timeout) => self.scenes.tick(self.clock.now()),
+                Err(RecvTimeoutError::Disconnected) => break,
+            };
+            self.publish_scene(scene);
+        }
+        let last = self.scenes.close();
+        self.publish_scene(last);
+    }
+
+    fn step(&mut self, seen: Seen) -> Option<Scene> {
+        let perceived = seen.detections.map(|detections| {
+            let received_at = detections.frame.received_at;
+            let perceived = Arc::new(self.perceiver.perceive(detections));
+            let now = self.clock.now();
+            self.metrics.time(
+                Edge::Perceive,
+                now.saturating_duration_since(seen.detected_at),
+            );
+            self.metrics.time(
+                Edge::ReceivedToPerceived,
+                now.saturating_duration_since(received_at),
+            );
+            self.metrics
+                .published(seen.camera, perceived.tracks.items.len());
+            self.fanout
+                .send(&Output::Camera(Arc::clone(&perceived)), Some(received_at));
+            perceived
+        });
+        self.scenes
+            .offer(seen.camera, perceived, &seen.live, self.clock.now())
+    }
+
+    fn publish_scene(&self, scene: Option<Scene>) {
+        if let Some(scene) = scene {
+            self.metrics.scene();
+            self.fanout.send(&Output::Scene(Arc::new(scene)), None);
+        }
+    }
+}
+
+fn receive(detections: &Receiver<Seen>, wait: Option<Duration>) -> Result<Seen, RecvTimeoutError> {
+    match wait {
+        Some(wait) => detections.recv_timeout(wait),
+        None => detections
+            .recv()
+            .map_err(|_| RecvTimeoutError::Disconnected),
+    }
+}
