@@ -1,1 +1,32 @@
 //! Frame sources: image sequences, video files and rig datasets.
+//!
+//! A [`Recording`] is what one camera once saw; a [`Player`] turns it into a [`FrameSource`]; a
+//! [`Playback`] is the clock that the players of one rig share. Live cameras need none of the three:
+//! they implement [`FrameSource`] themselves.
+//!
+//! [`FrameSource`]: roadwatch_core::FrameSource
+
+pub mod counted;
+pub mod frame_rate;
+pub mod image_sequence;
+mod mat;
+mod natural_order;
+pub mod playback;
+pub mod player;
+pub mod rig_dataset;
+pub mod span;
+pub mod still_image;
+mod video_clock;
+pub mod video_file;
+
+pub use counted::{Counted, DecodeCount};
+pub use frame_rate::FrameRate;
+pub use image_sequence::{ImageSequence, SequenceError, StampedFile};
+pub use playback::{Due, Pace, Playback, PlaybackOptions, Repeat, Speed};
+pub use player::{Player, Recording};
+pub use rig_dataset::{
+    DatasetError, DatasetFrame, FramesProblem, RigDataset, RigProblem, read_rig_file,
+};
+pub use span::Span;
+pub use still_image::StillImage;
+pub use video_file::{VideoError, VideoFile};

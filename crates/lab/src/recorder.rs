@@ -1,0 +1,58 @@
+//! A sink that keeps what was perceived, for scoring afterwards.
+
+use roadwatch_core::{CameraId, Detection, Output, Sink, SinkError, Timestamp, Track};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// What was made of one frame, without its image.
+#[derive(Debug, Clone)]
+pub struct Recorded {
+    /// The camera.
+    pub camera: CameraId,
+    /// Capture time.
+    pub captured_at: Timestamp,
+    /// Objects with a place.
+    pub tracks: Vec<Track>,
+    /// Detections without.
+    pub unlocated: Vec<Detection>,
+}
+
+impl Recorded {
+    /// Every detection of the frame, with a place or without.
+    pub fn detections(&self) -> impl Iterator<Item = &Detection> {
+        let located = self
+            .tracks
+            .iter()
+            .map(|track| &track.observed.located.detection);
+        located.chain(&self.unlocated)
+    }
+}
+
+/// The sink. Clones share what is kept.
+#[derive(Debug, Clone, Default)]
+pub struct Recorder(Arc<Mutex<Vec<Recorded>>>);
+
+impl Recorder {
+    /// Takes everything kept so far, in order of publishing.
+    #[must_use]
+    pub fn take(&self) -> Vec<Recorded> {
+        std::mem::take(&mut *self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+impl Sink for Recorder {
+    fn publish(&mut self, output: &Output) -> Result<(), SinkError> {
+        if let Output::Camera(perceived) = output {
+            let recorded = Recorded {
+                camera: perceived.tracks.frame.camera,
+                captured_at: perceived.tracks.frame.captured_at,
+                tracks: perceived.tracks.items.clone(),
+                unlocated: perceived.unlocated.clone(),
+            };
+            self.0
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .push(recorded);
+        }
+        Ok(())
+    }
+}
