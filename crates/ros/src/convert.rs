@@ -1,0 +1,155 @@
+//! From outputs to messages: pure functions, the same for the node and for the bag.
+
+mod calibration;
+mod detections;
+mod markers;
+mod objects;
+mod pose;
+mod seen;
+
+use crate::{
+    msg::{
+        roadwatch_msgs::ObjectArray,
+        sensor_msgs::CameraInfo,
+        tf2_msgs::TFMessage,
+        vision_msgs::{Detection2DArray, Detection3DArray},
+        visualization_msgs::MarkerArray,
+    },
+    surface::{InvalidSurface, Surface},
+    topics::{Topic, TopicKind, Topics},
+};
+use roadwatch_core::{Output, Perceived, Rig, Scene, Timestamp};
+use seen::SeenTogether;
+use serde::Serialize;
+use std::{ops::Range, sync::Arc};
+
+pub use markers::MARKER_LIFETIME;
+pub use pose::{UPRIGHT_VARIANCE_RAD2, YAW_UNKNOWN_VARIANCE_RAD2};
+
+/// A message of any published type; serialises as the message inside.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Message {
+    /// For [`TopicKind::Objects`].
+    Objects(ObjectArray),
+    /// For [`TopicKind::Detections2d`].
+    Detections2d(Detection2DArray),
+    /// For [`TopicKind::Detections3d`].
+    Detections3d(Detection3DArray),
+    /// For [`TopicKind::Markers`].
+    Markers(MarkerArray),
+    /// For [`TopicKind::CameraInfo`].
+    CameraInfo(Box<CameraInfo>),
+    /// For [`TopicKind::TfStatic`].
+    TfStatic(TFMessage),
+}
+
+impl Message {
+    /// The kind of topic it belongs to.
+    #[must_use]
+    pub fn kind(&self) -> TopicKind {
+        match self {
+            Self::Objects(_) => TopicKind::Objects,
+            Self::Detections2d(_) => TopicKind::Detections2d,
+            Self::Detections3d(_) => TopicKind::Detections3d,
+            Self::Markers(_) => TopicKind::Markers,
+            Self::CameraInfo(_) => TopicKind::CameraInfo,
+            Self::TfStatic(_) => TopicKind::TfStatic,
+        }
+    }
+}
+
+/// A message and where it goes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outgoing {
+    /// Place of its topic in [`Messages::topics`].
+    pub topic: usize,
+    /// What is published there.
+    pub message: Message,
+}
+
+/// Turns outputs of one rig into messages.
+#[derive(Clone, Debug)]
+pub struct Messages {
+    rig: Arc<Rig>,
+    base_frame: String,
+    topics: Topics,
+}
+
+impl Messages {
+    /// Messages of `rig` under the names of `surface`.
+    ///
+    /// # Errors
+    /// When ROS 2 would refuse a name.
+    pub fn new(rig: Arc<Rig>, surface: &Surface) -> Result<Self, InvalidSurface> {
+        surface.check()?;
+        Ok(Self {
+            topics: Topics::new(&rig, surface),
+            base_frame: surface.base_frame.clone(),
+            rig,
+        })
+    }
+
+    /// Every topic that a message can go to.
+    #[must_use]
+    pub fn topics(&self) -> &[Topic] {
+        self.topics.list()
+    }
+
+    /// The messages of one output, in order of publishing. Nothing seen gives empty arrays.
+    #[must_use]
+    pub fn of(&self, output: &Output) -> Vec<Outgoing> {
+        match output {
+            Output::Camera(perceived) => self.of_camera(perceived),
+            Output::Scene(scene) => self.of_scene(scene),
+        }
+    }
+
+    /// Where every camera sits, for `/tf_static`. Tools show its stamp and some refuse zero; static
+    /// transforms hold at all times.
+    #[must_use]
+    pub fn tf_static(&self, stamp: Timestamp) -> Outgoing {
+        Outgoing {
+            topic: Topics::TF_STATIC,
+            message: Message::TfStatic(calibration::tf_static(&self.rig, &self.base_frame, stamp)),
+        }
+    }
+
+    fn of_camera(&self, perceived: &Perceived) -> Vec<Outgoing> {
+        let id = perceived.tracks.frame.camera;
+        let camera = self.rig.camera(id);
+        let seen = SeenTogether::in_camera(&self.rig, &self.base_frame, &perceived.tracks);
+        let messages = [
+            Message::Objects(objects::objects(&seen)),
+            Message::Detections2d(detections::detections_2d(
+                &seen,
+                &perceived.unlocated,
+                camera,
+            )),
+            Message::Detections3d(detections::detections_3d(&seen)),
+            Message::Markers(markers::markers(&seen)),
+            Message::CameraInfo(Box::new(calibration::camera_info(camera, seen.stamp))),
+        ];
+        addressed(self.topics.of_camera(id), messages)
+    }
+
+    fn of_scene(&self, scene: &Scene) -> Vec<Outgoing> {
+        let seen = SeenTogether::in_scene(&self.rig, &self.base_frame, scene);
+        let messages = [
+            Message::Objects(objects::objects(&seen)),
+            Message::Detections3d(detections::detections_3d(&seen)),
+            Message::Markers(markers::markers(&seen)),
+        ];
+        addressed(self.topics.of_scene(), messages)
+    }
+}
+
+fn addressed<const N: usize>(places: Range<usize>, messages: [Message; N]) -> Vec<Outgoing> {
+    places
+        .zip(messages)
+        .map(|(topic, message)| Outgoing { topic, message })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,105 @@
+//! `vision_msgs`: boxes in the image and in space.
+
+use super::{
+    pose::{UncertainPose, extents},
+    seen::SeenTogether,
+};
+use crate::msg::{
+    geometry_msgs::PoseWithCovariance,
+    std_msgs::Header,
+    vision_msgs::{
+        BoundingBox2D, BoundingBox3D, Detection2D, Detection2DArray, Detection3D, Detection3DArray,
+        ObjectHypothesis, ObjectHypothesisWithPose, Point2D, Pose2D,
+    },
+};
+use roadwatch_core::{BoxPx, Detection, RigCamera};
+
+/// Boxes as detected, pixels: first those of tracks, each with the object's pose in the optical frame,
+/// then those without a place, whose id is empty and whose pose is marked unknown.
+pub(crate) fn detections_2d(
+    seen: &SeenTogether,
+    unlocated: &[Detection],
+    camera: &RigCamera,
+) -> Detection2DArray {
+    let header = Header::new(seen.stamp, camera.name.optical_frame());
+    let detection = |found: &Detection, pose, id| Detection2D {
+        header: header.clone(),
+        results: vec![hypothesis(found, pose)],
+        bbox: box_2d(&found.box_px),
+        id,
+    };
+    let tracked = seen.objects.iter().map(|one| {
+        let observed = &one.track.observed;
+        let pose = UncertainPose::in_optical(observed, camera.base_from_optical);
+        detection(
+            &observed.located.detection,
+            (&pose).into(),
+            one.track.id.0.to_string(),
+        )
+    });
+    let placeless = unlocated
+        .iter()
+        .map(|found| detection(found, pose_unknown(), String::new()));
+    Detection2DArray {
+        detections: tracked.chain(placeless).collect(),
+        header: header.clone(),
+    }
+}
+
+/// Boxes in space, in the base frame. The pose stands twice, in `bbox` and in `results[0]`, because
+/// viewers read the one and trackers the other.
+pub(crate) fn detections_3d(seen: &SeenTogether) -> Detection3DArray {
+    let detections = seen
+        .objects
+        .iter()
+        .map(|one| {
+            let located = &one.track.observed.located;
+            let pose = UncertainPose::in_base(&one.track.observed);
+            Detection3D {
+                header: seen.header_of(one),
+                results: vec![hypothesis(&located.detection, (&pose).into())],
+                bbox: BoundingBox3D {
+                    center: (&pose.isometry).into(),
+                    size: extents(located.location.size),
+                },
+                id: one.track.id.0.to_string(),
+            }
+        })
+        .collect();
+    Detection3DArray {
+        header: seen.header(),
+        detections,
+    }
+}
+
+fn hypothesis(detection: &Detection, pose: PoseWithCovariance) -> ObjectHypothesisWithPose {
+    ObjectHypothesisWithPose {
+        hypothesis: ObjectHypothesis {
+            class_id: detection.class.as_str().to_owned(),
+            score: f64::from(detection.score.get()),
+        },
+        pose,
+    }
+}
+
+/// No pose: -1 as the first variance, which is how `sensor_msgs` says that there is none.
+fn pose_unknown() -> PoseWithCovariance {
+    let mut pose = PoseWithCovariance::default();
+    pose.covariance[0][0] = -1.0;
+    pose
+}
+
+fn box_2d(box_px: &BoxPx) -> BoundingBox2D {
+    let middle = box_px.center();
+    BoundingBox2D {
+        center: Pose2D {
+            position: Point2D {
+                x: middle.x,
+                y: middle.y,
+            },
+            theta: 0.0,
+        },
+        size_x: f64::from(box_px.x_max) - f64::from(box_px.x_min),
+        size_y: f64::from(box_px.y_max) - f64::from(box_px.y_min),
+    }
+}

@@ -1,0 +1,145 @@
+//! `visualization_msgs/MarkerArray`: box, heading and label of each object.
+
+use super::{
+    pose::{UncertainPose, extents},
+    seen::{Seen, SeenTogether},
+};
+use crate::msg::{
+    builtin_interfaces::Duration,
+    geometry_msgs::{Pose, Vector3},
+    std_msgs::ColorRGBA,
+    visualization_msgs::{Marker, MarkerArray},
+};
+
+/// How long a shape outlives the last message: longer than the slowest camera's interval, short enough
+/// that a viewer does not go on showing objects of a node that is gone.
+pub const MARKER_LIFETIME: Duration = Duration { sec: 1, nanosec: 0 };
+
+/// Height of a label's capital letters, metres.
+const LABEL_HEIGHT_M: f64 = 0.6;
+/// Gap between the top of a box and its label, metres.
+const LABEL_GAP_M: f64 = 0.5;
+/// Thickness of an arrow's shaft, metres.
+const ARROW_THICKNESS_M: f64 = 0.2;
+/// Opacity of a box measured in this frame.
+const FRESH_OPACITY: f32 = 0.6;
+/// Opacity of a box kept from an earlier frame.
+const HELD_OPACITY: f32 = 0.25;
+
+/// First a marker that clears the topic, then the shapes of each object.
+///
+/// A shape is called `<camera>/<shape>` and the number of its track, so that it keeps its name while
+/// the track lives, and cameras that count their tracks alike do not overwrite each other's shapes.
+pub(crate) fn markers(seen: &SeenTogether) -> MarkerArray {
+    let clear = Marker {
+        header: seen.header(),
+        action: Marker::DELETE_ALL,
+        ..Marker::default()
+    };
+    let shapes = seen.objects.iter().flat_map(|one| shapes(seen, one));
+    MarkerArray {
+        markers: std::iter::once(clear).chain(shapes).collect(),
+    }
+}
+
+fn shapes(together: &SeenTogether, seen: &Seen) -> Vec<Marker> {
+    let mut shapes = vec![cube(together, seen)];
+    if seen.track.observed.heading.is_some() {
+        shapes.push(arrow(together, seen));
+    }
+    shapes.push(label(together, seen));
+    shapes
+}
+
+fn cube(together: &SeenTogether, seen: &Seen) -> Marker {
+    let location = &seen.track.observed.located.location;
+    let opacity = if location.held {
+        HELD_OPACITY
+    } else {
+        FRESH_OPACITY
+    };
+    Marker {
+        kind: Marker::CUBE,
+        pose: pose_of(seen),
+        scale: extents(location.size),
+        color: color_of(seen, opacity),
+        ..shape(together, seen, "box")
+    }
+}
+
+fn arrow(together: &SeenTogether, seen: &Seen) -> Marker {
+    let location = &seen.track.observed.located.location;
+    Marker {
+        kind: Marker::ARROW,
+        pose: pose_of(seen),
+        // From the middle of the box to as far again beyond its nose.
+        scale: Vector3 {
+            x: location.size.length_m,
+            y: ARROW_THICKNESS_M,
+            z: ARROW_THICKNESS_M,
+        },
+        color: color_of(seen, 1.0),
+        ..shape(together, seen, "heading")
+    }
+}
+
+fn label(together: &SeenTogether, seen: &Seen) -> Marker {
+    let located = &seen.track.observed.located;
+    let mut pose = Pose {
+        position: located.location.position.coords.into(),
+        ..Pose::default()
+    };
+    pose.position.z += located.location.size.height_m / 2.0 + LABEL_GAP_M;
+    Marker {
+        kind: Marker::TEXT_VIEW_FACING,
+        pose,
+        scale: Vector3 {
+            z: LABEL_HEIGHT_M,
+            ..Vector3::default()
+        },
+        color: WHITE,
+        text: format!(
+            "{} {} {:.1} m",
+            located.detection.class, seen.track.id.0, located.location.range_m
+        ),
+        ..shape(together, seen, "label")
+    }
+}
+
+fn shape(together: &SeenTogether, seen: &Seen, name: &str) -> Marker {
+    let camera = seen.seen_by.first().copied().unwrap_or_default();
+    Marker {
+        header: together.header_of(seen),
+        ns: format!("{camera}/{name}"),
+        id: marker_id(seen.track.id.0),
+        action: Marker::ADD,
+        lifetime: MARKER_LIFETIME,
+        ..Marker::default()
+    }
+}
+
+/// The track's number within the 31 bits a marker has; two billion tracks pass before one repeats.
+fn marker_id(track_id: u64) -> i32 {
+    (track_id & u64::from(i32::MAX as u32)) as i32
+}
+
+fn pose_of(seen: &Seen) -> Pose {
+    (&UncertainPose::in_base(&seen.track.observed).isometry).into()
+}
+
+const WHITE: ColorRGBA = rgba(1.0, 1.0, 1.0, 1.0);
+
+const fn rgba(r: f32, g: f32, b: f32, a: f32) -> ColorRGBA {
+    ColorRGBA { r, g, b, a }
+}
+
+/// A colour per class, from a palette that the colour-blind can tell apart (Okabe and Ito, 2008).
+fn color_of(seen: &Seen, opacity: f32) -> ColorRGBA {
+    match seen.track.observed.located.detection.class.as_str() {
+        "car" => rgba(0.0, 0.45, 0.7, opacity),
+        "truck" | "bus" | "train" => rgba(0.8, 0.47, 0.65, opacity),
+        "person" => rgba(0.9, 0.6, 0.0, opacity),
+        "bicycle" | "motorcycle" => rgba(0.0, 0.62, 0.45, opacity),
+        _ => rgba(0.6, 0.6, 0.6, opacity),
+    }
+}

@@ -1,0 +1,96 @@
+//! Pose and 6x6 covariance of an object.
+
+use crate::msg::geometry_msgs::{PoseWithCovariance, Vector3};
+use nalgebra::{Isometry3, Matrix6, Translation3, UnitQuaternion, Vector3 as Axis};
+use roadwatch_core::{
+    Heading, Oriented, SizeLwh,
+    space::{BaseLink, Optical, Transform},
+};
+use std::f64::consts::PI;
+
+/// Variance of a heading that nothing is known about: a uniform angle over a full turn, square radians.
+pub const YAW_UNKNOWN_VARIANCE_RAD2: f64 = PI * PI / 3.0;
+
+/// Variance of roll and pitch, square radians: objects stand upright on a road whose slope against the
+/// vehicle stays within some five degrees. Zero would make the matrix singular, and filters invert it.
+pub const UPRIGHT_VARIANCE_RAD2: f64 = 0.0076;
+
+/// An object's pose in some frame, with the covariance of position and rotation about that frame's axes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct UncertainPose {
+    /// Centre and axes of the object's box.
+    pub(crate) isometry: Isometry3<f64>,
+    covariance: Matrix6<f64>,
+}
+
+/// Variance of the yaw, square radians; that of a uniform angle without a heading.
+pub(crate) fn yaw_variance(heading: Option<Heading>) -> f64 {
+    heading.map_or(YAW_UNKNOWN_VARIANCE_RAD2, |h| h.std_dev_rad * h.std_dev_rad)
+}
+
+/// Length, width and height as extents along x, y and z.
+pub(crate) fn extents(size: SizeLwh) -> Vector3 {
+    Vector3 {
+        x: size.length_m,
+        y: size.width_m,
+        z: size.height_m,
+    }
+}
+
+impl UncertainPose {
+    /// The pose in the base frame; not turned when the heading is unknown.
+    pub(crate) fn in_base(object: &Oriented) -> Self {
+        let location = &object.located.location;
+        let yaw_rad = object.heading.map_or(0.0, |heading| heading.yaw_rad);
+        let diagonal = [
+            UPRIGHT_VARIANCE_RAD2,
+            UPRIGHT_VARIANCE_RAD2,
+            yaw_variance(object.heading),
+        ];
+        let mut covariance = Matrix6::zeros();
+        covariance
+            .fixed_view_mut::<3, 3>(0, 0)
+            .copy_from(&location.covariance.matrix);
+        covariance
+            .fixed_view_mut::<3, 3>(3, 3)
+            .set_diagonal(&diagonal.into());
+        Self {
+            isometry: Isometry3::from_parts(
+                Translation3::from(location.position.coords),
+                UnitQuaternion::from_axis_angle(&Axis::z_axis(), yaw_rad),
+            ),
+            covariance,
+        }
+    }
+
+    /// The same pose in a camera's optical frame.
+    pub(crate) fn in_optical(
+        object: &Oriented,
+        base_from_optical: Transform<BaseLink, Optical>,
+    ) -> Self {
+        let optical_from_base = base_from_optical.inverse().isometry;
+        let in_base = Self::in_base(object);
+        let turn = optical_from_base.rotation.to_rotation_matrix();
+        let mut turn_both = Matrix6::zeros();
+        turn_both
+            .fixed_view_mut::<3, 3>(0, 0)
+            .copy_from(turn.matrix());
+        turn_both
+            .fixed_view_mut::<3, 3>(3, 3)
+            .copy_from(turn.matrix());
+        Self {
+            isometry: optical_from_base * in_base.isometry,
+            covariance: turn_both * in_base.covariance * turn_both.transpose(),
+        }
+    }
+}
+
+impl From<&UncertainPose> for PoseWithCovariance {
+    fn from(pose: &UncertainPose) -> Self {
+        Self {
+            pose: (&pose.isometry).into(),
+            // Columns of a symmetric matrix are its rows.
+            covariance: pose.covariance.into(),
+        }
+    }
+}

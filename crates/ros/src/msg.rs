@@ -1,0 +1,16 @@
+//! The ROS 2 messages this crate publishes, as plain serde types.
+//!
+//! Fields stand in the order of the `.msg` files, because CDR has no field names: order and type are
+//! the wire format. A test compares every type with its `.msg` file.
+
+pub mod builtin_interfaces;
+pub mod geometry_msgs;
+pub mod roadwatch_msgs;
+pub mod sensor_msgs;
+pub mod std_msgs;
+pub mod tf2_msgs;
+pub mod vision_msgs;
+pub mod visualization_msgs;
+
+#[cfg(test)]
+mod matches_definitions;

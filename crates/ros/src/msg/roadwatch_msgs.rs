@@ -1,0 +1,55 @@
+//! `roadwatch_msgs`: everything that is known. `msgs/roadwatch_msgs/msg` is the source.
+
+use super::{
+    geometry_msgs::{Point, Vector3},
+    std_msgs::Header,
+};
+use serde::{Deserialize, Serialize};
+
+/// One object and everything that is known about it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Object {
+    /// Capture time of the frame it was last seen in, base frame.
+    pub header: Header,
+    /// Who it is.
+    pub track_id: u64,
+    /// What it is.
+    pub class_id: String,
+    /// How sure the detector is, 0 to 1.
+    pub score: f32,
+    /// The box as detected: x_min, y_min, x_max, y_max, pixels.
+    pub box_px: [f32; 4],
+    /// Centre of its box, metres.
+    pub position: Point,
+    /// Covariance of the position, row by row, square metres.
+    pub position_covariance: [f64; 9],
+    /// Length, width, height, metres.
+    pub size: Vector3,
+    /// Along the optical axis, metres.
+    pub depth_m: f64,
+    /// Horizontal distance from the camera, metres.
+    pub range_m: f64,
+    /// How the position was found.
+    pub method: String,
+    /// Whether the position is an earlier one.
+    pub held: bool,
+    /// Whether anything says which way it points.
+    pub heading_known: bool,
+    /// Heading, radians; 0 when unknown.
+    pub yaw_rad: f64,
+    /// Variance of the heading, square radians.
+    pub yaw_variance: f64,
+    /// Names of the cameras that saw it.
+    pub seen_by: Vec<String>,
+}
+
+/// All objects of one frame of one camera, or of one scene.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ObjectArray {
+    /// Capture time, base frame.
+    pub header: Header,
+    /// Name of the camera; empty for the scene.
+    pub camera: String,
+    /// Empty when nothing was seen.
+    pub objects: Vec<Object>,
+}

@@ -1,0 +1,153 @@
+//! What the node looks like from outside: its name, its namespace, its frames.
+
+/// Depth of the per-frame topics' history unless configured otherwise, messages.
+pub const DEFAULT_QUEUE_DEPTH: usize = 5;
+
+/// Name, namespace and frame of the node, and how many messages its topics keep.
+///
+/// Shared by the node and the bag, so that both carry the same topics.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Surface {
+    /// Name of the node: one legal ROS 2 name token.
+    pub node_name: String,
+    /// Namespace of the node, `/` for none: legal tokens joined and led by slashes.
+    pub namespace: String,
+    /// tf frame of the vehicle that positions are given in.
+    pub base_frame: String,
+    /// Messages that a per-frame topic keeps for slow readers; at least 1.
+    pub queue_depth: usize,
+}
+
+impl Default for Surface {
+    /// `/roadwatch`, positions in `base_link`, five messages kept.
+    fn default() -> Self {
+        Self {
+            node_name: "roadwatch".to_owned(),
+            namespace: "/".to_owned(),
+            base_frame: "base_link".to_owned(),
+            queue_depth: DEFAULT_QUEUE_DEPTH,
+        }
+    }
+}
+
+/// A name, frame or depth that ROS 2 would refuse.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum InvalidSurface {
+    /// The node's name is not a token.
+    #[error(
+        "`{0}` cannot name a node: use letters, digits and single underscores, not beginning with a digit"
+    )]
+    NodeName(String),
+    /// The namespace is not a path of tokens.
+    #[error(
+        "`{0}` is not a namespace: expected `/`, or names led by slashes like `/vehicle/front`"
+    )]
+    Namespace(String),
+    /// The frame's name is empty or absolute.
+    #[error(
+        "`{0}` cannot name a tf frame: it must not be empty, begin with a slash or hold blanks"
+    )]
+    BaseFrame(String),
+    /// A topic must keep at least one message.
+    #[error("a queue depth of 0 keeps no message: use 1 or more")]
+    QueueDepth,
+}
+
+impl Surface {
+    /// Checks what was configured.
+    ///
+    /// # Errors
+    /// The first entry that ROS 2 would refuse.
+    pub fn check(&self) -> Result<(), InvalidSurface> {
+        if !is_token(&self.node_name) {
+            return Err(InvalidSurface::NodeName(self.node_name.clone()));
+        }
+        if !is_namespace(&self.namespace) {
+            return Err(InvalidSurface::Namespace(self.namespace.clone()));
+        }
+        let frame = &self.base_frame;
+        if frame.is_empty() || frame.starts_with('/') || frame.contains(char::is_whitespace) {
+            return Err(InvalidSurface::BaseFrame(frame.clone()));
+        }
+        if self.queue_depth == 0 {
+            return Err(InvalidSurface::QueueDepth);
+        }
+        Ok(())
+    }
+
+    /// What `~` stands for in a topic's name: `/<namespace>/<node>`.
+    #[must_use]
+    pub fn private_prefix(&self) -> String {
+        let namespace = self.namespace.trim_end_matches('/');
+        format!("{namespace}/{}", self.node_name)
+    }
+}
+
+fn is_token(text: &str) -> bool {
+    let legal = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    !text.is_empty()
+        && !text.starts_with(|c: char| c.is_ascii_digit())
+        && !text.contains("__")
+        && text.chars().all(legal)
+}
+
+fn is_namespace(text: &str) -> bool {
+    text == "/"
+        || text
+            .strip_prefix('/')
+            .is_some_and(|path| path.split('/').all(is_token))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn private_names_hang_below_the_node() {
+        let root = Surface::default();
+        assert_eq!(root.private_prefix(), "/roadwatch");
+        let nested = Surface {
+            namespace: "/vehicle/one".to_owned(),
+            ..root
+        };
+        assert_eq!(nested.private_prefix(), "/vehicle/one/roadwatch");
+    }
+
+    #[test]
+    fn what_ros_refuses_is_refused() {
+        let good = Surface::default();
+        assert_eq!(good.check(), Ok(()));
+        for bad in ["", "a b", "a/b", "9a", "a__b", "größe"] {
+            let named = Surface {
+                node_name: bad.to_owned(),
+                ..good.clone()
+            };
+            assert_eq!(named.check(), Err(InvalidSurface::NodeName(bad.to_owned())));
+        }
+        for bad in ["", "vehicle", "/vehicle/", "//a", "/a//b", "/9"] {
+            let placed = Surface {
+                namespace: bad.to_owned(),
+                ..good.clone()
+            };
+            assert_eq!(
+                placed.check(),
+                Err(InvalidSurface::Namespace(bad.to_owned()))
+            );
+        }
+        for bad in ["", "/base_link", "base link"] {
+            let framed = Surface {
+                base_frame: bad.to_owned(),
+                ..good.clone()
+            };
+            assert_eq!(
+                framed.check(),
+                Err(InvalidSurface::BaseFrame(bad.to_owned()))
+            );
+        }
+        let shallow = Surface {
+            queue_depth: 0,
+            ..good
+        };
+        assert_eq!(shallow.check(), Err(InvalidSurface::QueueDepth));
+    }
+}
