@@ -58,11 +58,7 @@ pub fn evaluate(
         let detections: Vec<&Detection> = frame.detections().collect();
         let matches = match_image(&detections, objects, evaluation.filter);
         counts.add(&matches, objects, evaluation.filter);
-        let scored = matches
-            .pairs
-            .iter()
-            .filter(|&&(_, object)| evaluation.filter.admits(&objects[object]));
-        pairs.extend(scored.map(|&(detection, object)| Pair {
+        pairs.extend(matches.pairs.iter().map(|&(detection, object)| Pair {
             camera,
             detection: detections[detection],
             object: &objects[object],
@@ -129,12 +125,8 @@ impl Counts {
             .iter()
             .filter(|object| filter.admits(object))
             .count();
-        let admitted = matches
-            .pairs
-            .iter()
-            .filter(|(_, object)| filter.admits(&objects[*object]));
-        self.found += admitted.count();
-        self.false_alarms += matches.unmatched.len();
+        self.found += matches.pairs.len();
+        self.false_alarms += matches.false_alarms.len();
     }
 
     fn score(&self) -> DetectionScore {

@@ -1,1 +1,12 @@
-//! Real-time multi-camera perception daemon.
+//! The daemon: configuration, wiring, command line. `main.rs` only hands over its arguments.
+
+pub mod cli;
+pub mod clock;
+pub mod commands;
+pub mod config;
+pub mod failure;
+pub mod open;
+pub mod session;
+pub mod status;
+
+pub use cli::main_with;

@@ -1,0 +1,276 @@
+//! The command line.
+
+use crate::{commands, failure::Failure};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::{ffi::OsString, io::IsTerminal as _, path::PathBuf, process::ExitCode};
+use tracing_subscriber::EnvFilter;
+
+/// The middleware warns of what is normal here (no ROS installation) and reports errors on every clean
+/// exit, so it is heard only when asked.
+const DEFAULT_LOG: &str = "warn,ros2_client=error,rustdds=off";
+
+/// Real-time multi-camera perception: camera images in, poses with 3D boxes out over ROS 2.
+///
+/// Start with `roadwatch run config/pandaset.toml`, and see what it would do with `roadwatch graph`.
+#[derive(Debug, Parser)]
+#[command(name = "roadwatch", version, arg_required_else_help = true)]
+pub struct Cli {
+    /// Log level: error, warn, info, debug, trace, or a filter such as `roadwatch_ros=debug`.
+    #[arg(long, global = true, default_value = DEFAULT_LOG, value_name = "FILTER")]
+    pub log: String,
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Run the daemon until its sources end or it is told to stop (SIGINT, SIGTERM).
+    Run(RunArgs),
+    /// Check a configuration and everything it names; print every mistake with file, line and key.
+    Check(ConfigArgs),
+    /// Print the stages, queues, topics and threads a configuration gives.
+    Graph(ConfigArgs),
+    /// Look-up tables: build, inspect, query.
+    #[command(subcommand)]
+    Table(TableCommand),
+    /// Run the pipeline over a labelled dataset and score every method side by side.
+    Evaluate(EvaluateArgs),
+    /// Detector models.
+    #[command(subcommand)]
+    Models(ModelsCommand),
+}
+
+/// A configuration file.
+#[derive(Debug, Args)]
+pub struct ConfigArgs {
+    /// The configuration file (TOML).
+    pub config: PathBuf,
+}
+
+/// What happens when frames come faster than they are worked off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Pace {
+    /// Frames come at recorded speed; the newest wins, drops are counted.
+    Realtime,
+    /// Sources wait; nothing is dropped; the same input gives the same output.
+    Lossless,
+}
+
+/// Arguments of `run`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    roadwatch run config/pandaset.toml\n  \
+    roadwatch run config/pandaset.toml --pace lossless --bag out\n  \
+    roadwatch run config/pandaset.toml --loop --speed 2")]
+pub struct RunArgs {
+    /// The configuration file (TOML).
+    pub config: PathBuf,
+    /// What happens when frames come faster than they are worked off.
+    #[arg(long, value_enum, default_value_t = Pace::Realtime)]
+    pub pace: Pace,
+    /// Record everything published into this folder (MCAP and metadata.yaml); it must not exist or be empty.
+    #[arg(long, value_name = "OUT")]
+    pub bag: Option<PathBuf>,
+    /// Begin recordings anew when they end; stamps keep rising.
+    #[arg(long = "loop")]
+    pub repeat: bool,
+    /// End after this many frames of each camera.
+    #[arg(long, value_name = "N")]
+    pub frames: Option<u64>,
+    /// Play recordings this many times as fast as recorded (realtime pace only).
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    pub speed: f64,
+    /// Take images, rig and stamps from this rig dataset instead of the configured one.
+    #[arg(long, value_name = "DIR")]
+    pub dataset: Option<PathBuf>,
+    /// Print the final counts and latencies as JSON on standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `evaluate`. The defaults of the filter are the *clean* objects of the method's page.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  \
+    roadwatch evaluate --config config/pandaset.toml -o evaluation")]
+pub struct EvaluateArgs {
+    /// The configuration file (TOML).
+    #[arg(long, value_name = "CONFIG")]
+    pub config: PathBuf,
+    /// Take images, rig and truth from this rig dataset, everything else from the configuration.
+    #[arg(long, value_name = "DIR")]
+    pub dataset: Option<PathBuf>,
+    /// Folder for report.json and report.md.
+    #[arg(short, long, value_name = "DIR", default_value = "evaluation")]
+    pub out: PathBuf,
+    /// Score only objects at least this high, pixels.
+    #[arg(long, value_name = "PX", default_value_t = 20.0)]
+    pub min_height_px: f64,
+    /// Score only objects hidden at most this much, 0 to 1.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.3)]
+    pub max_occluded: f64,
+    /// Score only objects at most this much outside the image, 0 to 1.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.05)]
+    pub max_truncated: f64,
+    /// Score only objects of these classes; repeat or separate by commas. What is detected as a car may be a
+    /// labelled truck and the other way round.
+    #[arg(
+        long,
+        value_name = "CLASS",
+        value_delimiter = ',',
+        default_value = "car"
+    )]
+    pub class: Vec<String>,
+    /// Use only the first frames of each camera.
+    #[arg(long, value_name = "N")]
+    pub frames: Option<u64>,
+    /// Print report.json instead of report.md on standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What to do with look-up tables.
+#[derive(Debug, Subcommand)]
+pub enum TableCommand {
+    /// Build a camera's table from its calibration, or import a bare 7-column CSV.
+    Build(TableBuildArgs),
+    /// Say what a table is of, and optionally export its rows as CSV.
+    Inspect(TableInspectArgs),
+    /// Ask a table where a box is.
+    Query(TableQueryArgs),
+}
+
+/// Arguments of `table build`.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  \
+    roadwatch table build --rig ../shared/data/pandaset-dev/rig.toml --camera front -o front.rwtable")]
+pub struct TableBuildArgs {
+    /// The rig: a `rig.toml` of a rig dataset.
+    #[arg(long, value_name = "FILE")]
+    pub rig: PathBuf,
+    /// The camera's name in the rig.
+    #[arg(long, value_name = "NAME")]
+    pub camera: String,
+    /// The table's file.
+    #[arg(short, long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// The class whose size and shape the table is for.
+    #[arg(long, default_value = "car")]
+    pub class: String,
+    /// Height of the ground plane in base_link, metres.
+    #[arg(
+        long,
+        value_name = "M",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
+    pub ground_z_m: f64,
+    /// Distance of neighbouring cells, metres.
+    #[arg(long, value_name = "M")]
+    pub step_m: Option<f64>,
+    /// Greatest distance ahead, metres.
+    #[arg(long, value_name = "M")]
+    pub farthest_m: Option<f64>,
+    /// Greatest distance to either side, metres.
+    #[arg(long, value_name = "M")]
+    pub lateral_m: Option<f64>,
+    /// Headings per cell, over half a turn.
+    #[arg(long, value_name = "N")]
+    pub headings: Option<u32>,
+    /// Take the rows from this CSV (Area,Center_x,Center_y,Distance,LocX,LocY,Loc) instead of building them.
+    #[arg(long, value_name = "CSV")]
+    pub import: Option<PathBuf>,
+}
+
+/// Arguments of `table inspect`.
+#[derive(Debug, Args)]
+pub struct TableInspectArgs {
+    /// The table's file.
+    pub table: PathBuf,
+    /// Write the rows as CSV.
+    #[arg(long, value_name = "CSV")]
+    pub export: Option<PathBuf>,
+}
+
+/// Arguments of `table query`.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  \
+    roadwatch table query front.rwtable --box 470,260,560,330 --distance-m 18.5")]
+pub struct TableQueryArgs {
+    /// The table's file.
+    pub table: PathBuf,
+    /// The box, `x_min,y_min,x_max,y_max` in pixels.
+    #[arg(
+        long = "box",
+        value_name = "X,Y,X,Y",
+        value_delimiter = ',',
+        num_args = 1,
+        required = true
+    )]
+    pub box_px: Vec<f32>,
+    /// Expected distance (eq. 2), metres.
+    #[arg(long, value_name = "M")]
+    pub distance_m: f32,
+    /// Weight of the distance in the score, pixels per metre of this table's images.
+    #[arg(long, value_name = "PX_PER_M")]
+    pub weight: Option<f32>,
+}
+
+/// What to do with models.
+#[derive(Debug, Subcommand)]
+pub enum ModelsCommand {
+    /// Open a model and say its head, classes, provider and speed.
+    Verify(ModelsVerifyArgs),
+}
+
+/// Arguments of `models verify`.
+#[derive(Debug, Args)]
+pub struct ModelsVerifyArgs {
+    /// The ONNX file.
+    pub model: PathBuf,
+    /// Runs to time.
+    #[arg(long, default_value_t = 20)]
+    pub runs: u32,
+    /// Threads inside one run; 0 for all cores.
+    #[arg(long, default_value_t = 0)]
+    pub threads: usize,
+    /// Input size for models that leave theirs open, `WIDTHxHEIGHT`.
+    #[arg(long, value_name = "WxH")]
+    pub input_size: Option<String>,
+}
+
+/// Runs the command that the arguments name, and gives the process's exit code.
+pub fn main_with(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let cli = Cli::try_parse_from(arguments);
+    let cli = match cli {
+        Ok(cli) => cli,
+        Err(error) => error.exit(),
+    };
+    tracing_subscriber::fmt()
+        .with_env_filter(EnvFilter::new(&cli.log))
+        .with_writer(std::io::stderr)
+        .with_ansi(std::io::stderr().is_terminal())
+        .with_target(false)
+        .init();
+    match run(cli.command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("{failure}");
+            failure.exit_code()
+        }
+    }
+}
+
+fn run(command: Command) -> Result<(), Failure> {
+    match command {
+        Command::Run(args) => commands::run::run(&args),
+        Command::Check(args) => commands::check::run(&args),
+        Command::Graph(args) => commands::graph::run(&args),
+        Command::Table(TableCommand::Build(args)) => commands::table::build(&args),
+        Command::Table(TableCommand::Inspect(args)) => commands::table::inspect(&args),
+        Command::Table(TableCommand::Query(args)) => commands::table::query(&args),
+        Command::Evaluate(args) => commands::evaluate::run(&args),
+        Command::Models(ModelsCommand::Verify(args)) => commands::models::verify(&args),
+    }
+}

@@ -1,0 +1,124 @@
+//! `roadwatch evaluate`.
+
+use crate::{
+    cli::EvaluateArgs,
+    config::{Config, Mistakes},
+    failure::Failure,
+    session::{Session, watch},
+};
+use anyhow::Context as _;
+use indicatif::{ProgressBar, ProgressStyle};
+use roadwatch_camera::{Pace, PlaybackOptions, Repeat, RigDataset};
+use roadwatch_core::Method;
+use roadwatch_lab::{
+    Evaluation, MethodUnderTest, Recorder, Truth, TruthFilter, evaluate::evaluate,
+};
+use roadwatch_pipeline::{NamedSink, Overload, PipelineOptions};
+use std::{sync::Arc, time::Duration};
+
+/// Often enough for a bar to look alive.
+const PROGRESS_PERIOD: Duration = Duration::from_millis(200);
+
+/// Runs the pipeline over a labelled dataset, scores every method, writes the report.
+///
+/// # Errors
+/// Mistakes in the configuration, a dataset without labels, a report that cannot be written.
+pub fn run(args: &EvaluateArgs) -> Result<(), Failure> {
+    let playback = PlaybackOptions {
+        pace: Pace::AsFastAsPossible,
+        repeat: Repeat::Once,
+        frame_limit: args.frames,
+    };
+    let session = Session::open(&args.config, args.dataset.clone(), playback)?;
+    let config = session.config.clone();
+    let dataset = dataset_of(&config, args)?;
+    let truth = Truth::read(dataset.folder()).context("nothing can be scored")?;
+    let rig = Arc::clone(&session.rig);
+    let recorder = Recorder::default();
+    let sink = NamedSink {
+        name: "recorder".to_owned(),
+        sink: Box::new(recorder.clone()),
+    };
+    let frames = dataset.frames().len() as u64;
+    let images = args.frames.map_or(frames, |limit| limit.min(frames)) * rig.cameras().len() as u64;
+    let bar = ProgressBar::new(images).with_style(style());
+    let running = session.start(vec![sink], PipelineOptions::new(Overload::Wait))?;
+    watch(
+        &running,
+        PROGRESS_PERIOD,
+        || false,
+        |running| {
+            let done = rig
+                .ids()
+                .map(|camera| running.metrics().camera(camera).published)
+                .sum();
+            bar.set_position(done);
+        },
+    )?;
+    bar.finish_and_clear();
+    let filter = TruthFilter {
+        min_height_px: args.min_height_px,
+        max_occluded: args.max_occluded,
+        max_truncated: args.max_truncated,
+        classes: args.class.clone(),
+    };
+    let evaluation = Evaluation {
+        rig: &rig,
+        dataset: &dataset,
+        truth: &truth,
+        filter: &filter,
+    };
+    let report = evaluate(&evaluation, &recorder.take(), &methods(&config));
+    report
+        .write(&args.out)
+        .context("the evaluation is done but not kept")?;
+    if args.json {
+        println!("{:#}", report.to_json());
+    } else {
+        println!("{}", report.to_markdown());
+    }
+    eprintln!(
+        "written: {0}/report.json, {0}/report.md",
+        args.out.display()
+    );
+    Ok(())
+}
+
+fn style() -> ProgressStyle {
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} images, {eta} left");
+    style.unwrap_or_else(|_| ProgressStyle::default_bar())
+}
+
+fn dataset_of(config: &Config, args: &EvaluateArgs) -> Result<Arc<RigDataset>, Mistakes> {
+    let dataset = config.rig.as_ref().and_then(|rig| rig.dataset.clone());
+    dataset.ok_or_else(|| {
+        Mistakes::about_file(
+            &args.config,
+            "names no dataset: set rig.dataset, or give --dataset DIR",
+        )
+    })
+}
+
+/// Every method on every camera, or why a method cannot be tried.
+fn methods(config: &Config) -> Vec<MethodUnderTest> {
+    let Some(rig) = &config.rig else {
+        return Vec::new();
+    };
+    let locators = |method| {
+        let pairs = rig.rig.cameras().iter().zip(&rig.cameras);
+        let built = pairs.map(|(camera, camera_config)| {
+            config
+                .locate
+                .locator(&rig.rig, camera, camera_config, method)
+                .map_err(|(_, what)| what)
+        });
+        built.collect::<Result<Vec<_>, _>>()
+    };
+    let tested = Method::ALL.into_iter();
+    tested
+        .map(|method| MethodUnderTest {
+            method,
+            locators: locators(method),
+        })
+        .collect()
+}

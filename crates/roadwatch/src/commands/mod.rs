@@ -1,0 +1,8 @@
+//! One module per command.
+
+pub mod check;
+pub mod evaluate;
+pub mod graph;
+pub mod models;
+pub mod run;
+pub mod table;

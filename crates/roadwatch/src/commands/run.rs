@@ -1,0 +1,131 @@
+//! `roadwatch run`.
+
+use crate::{
+    cli::{Pace, RunArgs},
+    clock::wall_time,
+    failure::Failure,
+    session::{Session, start_stamp, watch},
+    status::{self, StatusLine},
+};
+use anyhow::Context as _;
+use roadwatch_camera::{Pace as PlaybackPace, PlaybackOptions, Repeat, Speed};
+use roadwatch_pipeline::{NamedSink, Overload, PipelineOptions};
+use roadwatch_ros::{BagSink, LogTime, RosSink};
+use signal_hook::{
+    consts::{SIGINT, SIGTERM},
+    flag,
+};
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::{Duration, Instant},
+};
+
+/// One status line per second.
+const STATUS_PERIOD: Duration = Duration::from_secs(1);
+
+/// Runs the daemon until its sources end or a signal comes.
+///
+/// # Errors
+/// Mistakes in the configuration, a bag or node that cannot be made, a bug in a stage.
+pub fn run(args: &RunArgs) -> Result<(), Failure> {
+    let stop = stop_on_signals()?;
+    let session = Session::open(&args.config, args.dataset.clone(), playback(args)?)?;
+    let sinks = sinks(args, &session)?;
+    let options = PipelineOptions {
+        scene_timeout: session.config.scene_timeout,
+        ..PipelineOptions::new(overload(args.pace))
+    };
+    let (rig, decodes) = (Arc::clone(&session.rig), session.decodes.clone());
+    let began = Instant::now();
+    let running = session.start(sinks, options)?;
+    let mut line = StatusLine::new(rig.cameras().len(), began);
+    let report = |running: &roadwatch_pipeline::Running| {
+        eprintln!("{}", line.next(&rig, running.metrics(), Instant::now()));
+    };
+    watch(
+        &running,
+        STATUS_PERIOD,
+        || stop.load(Ordering::Relaxed),
+        report,
+    )?;
+    let took = began.elapsed();
+    eprintln!("{}", status::summary(&rig, running.metrics(), took));
+    if args.json {
+        println!(
+            "{:#}",
+            status::to_json(&rig, running.metrics(), took, decodes.get())
+        );
+    }
+    Ok(())
+}
+
+/// What a pace means to the pipeline.
+#[must_use]
+pub fn overload(pace: Pace) -> Overload {
+    match pace {
+        Pace::Realtime => Overload::NewestWins,
+        Pace::Lossless => Overload::Wait,
+    }
+}
+
+fn playback(args: &RunArgs) -> Result<PlaybackOptions, Failure> {
+    let speed = Speed::new(args.speed)
+        .with_context(|| format!("--speed {}: expected a number above zero", args.speed))?;
+    Ok(PlaybackOptions {
+        pace: match args.pace {
+            Pace::Realtime => PlaybackPace::Recorded { speed },
+            Pace::Lossless => PlaybackPace::AsFastAsPossible,
+        },
+        repeat: if args.repeat {
+            Repeat::Loop
+        } else {
+            Repeat::Once
+        },
+        frame_limit: args.frames,
+    })
+}
+
+fn sinks(args: &RunArgs, session: &Session) -> Result<Vec<NamedSink>, Failure> {
+    let mut sinks = Vec::new();
+    let node = &session.config.node;
+    if node.publish {
+        let ros = RosSink::start(Arc::clone(&session.rig), &node.options, start_stamp());
+        let sink = ros.context("the ROS 2 node cannot be started")?;
+        sinks.push(NamedSink {
+            name: "ros2".to_owned(),
+            sink: Box::new(sink),
+        });
+    }
+    if let Some(folder) = &args.bag {
+        let log_time = match args.pace {
+            Pace::Realtime => LogTime::WallClock(Box::new(wall_time)),
+            Pace::Lossless => LogTime::Stamp,
+        };
+        let bag = BagSink::create(
+            folder,
+            Arc::clone(&session.rig),
+            &node.options.surface,
+            log_time,
+        );
+        let sink = bag.context("nothing can be recorded")?;
+        sinks.push(NamedSink {
+            name: "bag".to_owned(),
+            sink: Box::new(sink),
+        });
+    }
+    Ok(sinks)
+}
+
+fn stop_on_signals() -> Result<Arc<AtomicBool>, Failure> {
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM] {
+        // A second signal ends the process at once, should the first not help.
+        flag::register_conditional_default(signal, Arc::clone(&stop))
+            .context("signals cannot be handled")?;
+        flag::register(signal, Arc::clone(&stop)).context("signals cannot be handled")?;
+    }
+    Ok(stop)
+}

@@ -1,0 +1,180 @@
+//! `roadwatch table`.
+
+use crate::{
+    cli::{TableBuildArgs, TableInspectArgs, TableQueryArgs},
+    failure::Failure,
+};
+use anyhow::{Context as _, anyhow};
+use indicatif::{ProgressBar, ProgressStyle};
+use roadwatch_camera::read_rig_file;
+use roadwatch_core::{BoxPx, ObjectClass, RigCamera};
+use roadwatch_locate::{
+    ClassSizes, GridSpec, HullSpec, LocationTable, SizeGroup, TableIndex, TableQuery, TableRow,
+    Weight, build_table,
+    table::{CsvOrigin, Split},
+};
+use std::{path::Path, sync::Arc};
+
+/// Steps of the progress bar: the builder tells a share, not a count.
+const BAR_STEPS: u64 = 1000;
+
+/// Builds a table from a camera's calibration, or from a CSV.
+///
+/// # Errors
+/// When the rig, the camera, the class or the grid will not do, or the file cannot be written.
+pub fn build(args: &TableBuildArgs) -> Result<(), Failure> {
+    let camera = find_camera(&args.rig, &args.camera)?;
+    let class = ObjectClass::new(&args.class);
+    let sizes = ClassSizes::default();
+    let size = sizes
+        .get(&class)
+        .with_context(|| format!("no size is known for class `{class}`"))?
+        .size;
+    let group = SizeGroup {
+        classes: vec![class.clone()],
+        size,
+    };
+    let table = match &args.import {
+        Some(csv) => {
+            let origin = CsvOrigin {
+                camera: &camera,
+                ground_z_m: args.ground_z_m,
+                group: &group,
+            };
+            LocationTable::read_csv(csv, origin).map_err(anyhow::Error::from)?
+        }
+        None => project(args, &camera, group, &HullSpec::for_class(&class))?,
+    };
+    table.write(&args.out).map_err(anyhow::Error::from)?;
+    println!(
+        "{}: {} rows for camera {}",
+        args.out.display(),
+        table.rows().len(),
+        camera.name
+    );
+    Ok(())
+}
+
+fn find_camera(rig: &Path, name: &str) -> Result<RigCamera, anyhow::Error> {
+    let cameras = read_rig_file(rig)?;
+    let known: Vec<_> = cameras
+        .iter()
+        .map(|camera| camera.name.to_string())
+        .collect();
+    let found = cameras
+        .into_iter()
+        .find(|camera| camera.name.as_str() == name);
+    found.ok_or_else(|| {
+        anyhow!(
+            "{}: no camera `{name}`; the rig has {}",
+            rig.display(),
+            known.join(", ")
+        )
+    })
+}
+
+fn project(
+    args: &TableBuildArgs,
+    camera: &RigCamera,
+    group: SizeGroup,
+    hull: &HullSpec,
+) -> Result<LocationTable, anyhow::Error> {
+    let defaults = GridSpec::default();
+    let grid = GridSpec {
+        step_m: args.step_m.unwrap_or(defaults.step_m),
+        farthest_m: args.farthest_m.unwrap_or(defaults.farthest_m),
+        lateral_m: args.lateral_m.unwrap_or(defaults.lateral_m),
+        headings: args.headings.unwrap_or(defaults.headings),
+        ..defaults
+    };
+    let style = ProgressStyle::with_template("{bar:40} {percent} %");
+    let bar = ProgressBar::new(BAR_STEPS)
+        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let table = build_table(camera, args.ground_z_m, &grid, (group, hull), |share| {
+        bar.set_position((f64::from(share) * BAR_STEPS as f64) as u64);
+    })?;
+    bar.finish_and_clear();
+    Ok(table)
+}
+
+/// Prints what a table is of.
+///
+/// # Errors
+/// When the table cannot be read, or the CSV not written.
+pub fn inspect(args: &TableInspectArgs) -> Result<(), Failure> {
+    let table = LocationTable::read(&args.table).map_err(anyhow::Error::from)?;
+    let header = table.header();
+    let classes: Vec<_> = header
+        .group
+        .classes
+        .iter()
+        .map(ObjectClass::as_str)
+        .collect();
+    let size = header.group.size;
+    println!("table     {}", args.table.display());
+    println!("camera    {}, {}", header.camera, header.image_size);
+    println!("made      {}", header.made);
+    println!(
+        "objects   {}, {} x {} x {} m",
+        classes.join(", "),
+        size.length_m,
+        size.width_m,
+        size.height_m
+    );
+    println!("rows      {}", table.rows().len());
+    println!("grid      {} m", header.grid.step_m);
+    let columns: [(&str, fn(&TableRow) -> f32); 3] = [
+        ("LocX", |row| row.loc_x_m),
+        ("LocY", |row| row.loc_y_m),
+        ("Distance", |row| row.distance_m),
+    ];
+    for (name, column) in columns {
+        let values = || table.rows().iter().map(column);
+        let (least, most) = (
+            values().fold(f32::INFINITY, f32::min),
+            values().fold(f32::NEG_INFINITY, f32::max),
+        );
+        println!("{name:<10}{least:.1} to {most:.1} m");
+    }
+    if let Some(csv) = &args.export {
+        table.write_csv(csv).map_err(anyhow::Error::from)?;
+        println!("exported  {}", csv.display());
+    }
+    Ok(())
+}
+
+/// Prints the row that a box matches best. Halves are split at the middle of the image, as the paper has it.
+///
+/// # Errors
+/// When the table cannot be read, or nothing matches.
+pub fn query(args: &TableQueryArgs) -> Result<(), Failure> {
+    let &[x_min, y_min, x_max, y_max] = args.box_px.as_slice() else {
+        return Err(anyhow!("--box: expected four numbers of pixels, like 470,260,560,330").into());
+    };
+    let box_px = BoxPx::new(x_min, y_min, x_max, y_max)
+        .context("--box: expected corners with an area between them")?;
+    let table = LocationTable::read(&args.table).map_err(anyhow::Error::from)?;
+    let image = table.header().image_size;
+    let center = box_px.center();
+    let query = TableQuery {
+        center_x_px: center.x as f32,
+        center_y_px: center.y as f32,
+        distance_m: args.distance_m,
+        px_per_metre: args
+            .weight
+            .unwrap_or_else(|| Weight::default().px_per_metre(&box_px, image)),
+    };
+    let split = Split::Literal {
+        image_width_px: image.width_px as f32,
+    };
+    let index = TableIndex::new(Arc::new(table), split);
+    let found = index
+        .nearest(&query)
+        .context("no row of that half matches")?;
+    let row = index.row(found);
+    println!("LocX      {:.2} m", row.loc_x_m);
+    println!("LocY      {:.2} m", row.loc_y_m);
+    println!("Distance  {:.2} m", row.distance_m);
+    println!("score     {:.2} px (row {})", found.score, found.row);
+    Ok(())
+}

@@ -1,0 +1,301 @@
+//! `[rig]` and `[[camera]]`: which cameras there are, how they see, where they sit, what feeds them.
+
+use super::reader::Reader;
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+use roadwatch_camera::{FrameRate, RigDataset};
+use roadwatch_core::{
+    CameraModel, CameraName, Distortion, ImageSize, Intrinsics, MeasuredFocal, Method, Rig,
+    RigCamera, Timestamp, space::Transform,
+};
+use std::{path::PathBuf, sync::Arc};
+
+/// How far a quaternion's length may be from 1: what printing it with four digits costs.
+const UNIT_TOLERANCE: f64 = 1e-3;
+const LARGEST_SIDE_PX: u32 = 16_384;
+/// Beyond this a focal length is a slip of units, pixels.
+const LONGEST_FOCAL_PX: f64 = 1e6;
+/// Beyond this a mount is a slip of units, metres.
+const FARTHEST_M: f64 = 1e4;
+/// Stamp of a recording's first frame when none is given: a year that nobody takes for real.
+const DEFAULT_START: Timestamp = Timestamp::from_nanos(0);
+
+/// What feeds a camera.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SourceConfig {
+    /// The camera of this index in the rig dataset.
+    Dataset(usize),
+    /// A folder of images.
+    Images {
+        /// The folder.
+        folder: PathBuf,
+        /// Frames per second.
+        rate: FrameRate,
+        /// Stamp of the first.
+        start: Timestamp,
+    },
+    /// A video file.
+    Video {
+        /// The file.
+        file: PathBuf,
+        /// Stamp of the first frame.
+        start: Timestamp,
+    },
+}
+
+/// What is configured for one camera beside its place in the [`Rig`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct CameraConfig {
+    /// What feeds it.
+    pub source: SourceConfig,
+    /// How its objects are located; `None` for the rig's method.
+    pub method: Option<Method>,
+    /// The file of its look-up table; `None` to build one at start.
+    pub table: Option<PathBuf>,
+    /// Dotted key of the table that configures it, such as `camera[0]`, or `rig.dataset`.
+    pub key: String,
+}
+
+/// The rig, and one [`CameraConfig`] per camera of it.
+#[derive(Debug, Clone)]
+pub struct RigConfig {
+    /// The cameras as geometry.
+    pub rig: Rig,
+    /// The cameras as configuration, in order of their ids.
+    pub cameras: Vec<CameraConfig>,
+    /// The dataset that some of them play; `None` without one.
+    pub dataset: Option<Arc<RigDataset>>,
+}
+
+/// What `[rig]` says by itself.
+pub(super) struct RigHead {
+    pub(super) dataset: Option<Arc<RigDataset>>,
+    pub(super) ground_z_m: f64,
+    /// The dataset came from the command line: `[[camera]]` tables may then name cameras it has not.
+    pub(super) overridden: bool,
+}
+
+pub(super) fn read_head(rig: &Reader<'_, '_>, dataset_override: Option<PathBuf>) -> RigHead {
+    let configured = rig.path("dataset");
+    let overridden = dataset_override.is_some();
+    let folder = dataset_override.or(configured);
+    let dataset = folder.and_then(|folder| {
+        let opened = RigDataset::open(&folder);
+        opened
+            .map_err(|error| rig.note("dataset", error.to_string()))
+            .ok()
+    });
+    RigHead {
+        dataset: dataset.map(Arc::new),
+        ground_z_m: rig
+            .number("ground_z_m", -FARTHEST_M..=FARTHEST_M)
+            .unwrap_or(0.0),
+        overridden,
+    }
+}
+
+/// `None` when the rig cannot be; every mistake is noted.
+pub(super) fn read(
+    rig: &Reader<'_, '_>,
+    head: RigHead,
+    tables: &[Reader<'_, '_>],
+) -> Option<RigConfig> {
+    let mut cameras: Vec<(RigCamera, CameraConfig)> = head
+        .dataset
+        .iter()
+        .flat_map(|dataset| from_dataset(dataset))
+        .collect();
+    for table in tables {
+        let name = table.required_text("name").and_then(|name| {
+            CameraName::new(name)
+                .map_err(|error| table.note("name", error.to_string()))
+                .ok()
+        });
+        let known = cameras
+            .iter_mut()
+            .find(|(camera, _)| Some(&camera.name) == name.as_ref());
+        match known {
+            Some((camera, config))
+                if matches!(config.source, SourceConfig::Dataset(_)) && !table.has("fx") =>
+            {
+                adjust(table, camera, config);
+            }
+            Some(_) => table.note("name", "another camera has this name"),
+            None if head.dataset.is_some() && !table.has("fx") => {
+                read_config(table, SourceConfig::Dataset(0));
+                measured_focal(table, 1);
+                if !head.overridden {
+                    table.note("name", "the dataset has no camera of this name");
+                }
+            }
+            None => cameras.extend(read_camera(table, name)),
+        }
+    }
+    let (rig_cameras, configs): (Vec<_>, _) = cameras.into_iter().unzip();
+    let built = Rig::new(rig_cameras, head.ground_z_m);
+    let built = built.map_err(|error| {
+        rig.note(
+            "dataset",
+            format!("{error}: name a dataset here or add [[camera]] tables"),
+        )
+    });
+    Some(RigConfig {
+        rig: built.ok()?,
+        cameras: configs,
+        dataset: head.dataset,
+    })
+}
+
+fn from_dataset(dataset: &RigDataset) -> Vec<(RigCamera, CameraConfig)> {
+    let config = |index| CameraConfig {
+        source: SourceConfig::Dataset(index),
+        method: None,
+        table: None,
+        key: "rig.dataset".to_owned(),
+    };
+    let cameras = dataset.cameras().iter().enumerate();
+    cameras
+        .map(|(index, camera)| (camera.clone(), config(index)))
+        .collect()
+}
+
+/// What a `[[camera]]` table adds to a camera of the dataset.
+fn adjust(table: &Reader<'_, '_>, camera: &mut RigCamera, config: &mut CameraConfig) {
+    camera.measured_focal = measured_focal(table, camera.model.size.height_px);
+    *config = read_config(table, config.source.clone());
+}
+
+fn read_config(table: &Reader<'_, '_>, source: SourceConfig) -> CameraConfig {
+    CameraConfig {
+        source,
+        method: super::locate::read_method(table),
+        table: table.path("table"),
+        key: table.path_in_file().to_owned(),
+    }
+}
+
+/// A camera that is not of the dataset: everything must be said.
+fn read_camera(
+    table: &Reader<'_, '_>,
+    name: Option<CameraName>,
+) -> Option<(RigCamera, CameraConfig)> {
+    let model = read_model(table);
+    let position = table.numbers::<3>("position_m");
+    let orientation = read_orientation(table);
+    if !table.has("position_m") {
+        table.note(
+            "position_m",
+            "missing: the camera's place in base_link, [x, y, z] in metres",
+        );
+    }
+    let source = read_source(table);
+    let focal = measured_focal(table, model.map_or(1, |model| model.size.height_px));
+    let config = source.map(|source| read_config(table, source));
+    let (model, [x, y, z]) = (model?, position?);
+    let camera = RigCamera {
+        name: name?,
+        model,
+        base_from_optical: Transform::new(Isometry3::from_parts(
+            Translation3::new(x, y, z),
+            orientation?,
+        )),
+        measured_focal: focal,
+    };
+    Some((camera, config?))
+}
+
+fn read_model(table: &Reader<'_, '_>) -> Option<CameraModel> {
+    let width_px = table.required_integer("width", 1..=LARGEST_SIDE_PX);
+    let height_px = table.required_integer("height", 1..=LARGEST_SIDE_PX);
+    let focal = |key| table.required_number(key, 1.0..=LONGEST_FOCAL_PX);
+    let center = |key| table.required_number(key, -LONGEST_FOCAL_PX..=LONGEST_FOCAL_PX);
+    let (fx, fy, cx, cy) = (focal("fx"), focal("fy"), center("cx"), center("cy"));
+    let coefficients = table.number_list("distortion").unwrap_or_default();
+    let lens = Distortion::from_ros(
+        table.text("distortion_model").unwrap_or("none"),
+        &coefficients,
+    );
+    let distortion = lens
+        .map_err(|error| table.note("distortion_model", error.to_string()))
+        .ok();
+    Some(CameraModel {
+        size: ImageSize {
+            width_px: width_px?,
+            height_px: height_px?,
+        },
+        intrinsics: Intrinsics {
+            fx: fx?,
+            fy: fy?,
+            cx: cx?,
+            cy: cy?,
+        },
+        distortion: distortion?,
+    })
+}
+
+fn read_orientation(table: &Reader<'_, '_>) -> Option<UnitQuaternion<f64>> {
+    const KEY: &str = "orientation_wxyz";
+    if !table.has(KEY) {
+        table.note(
+            KEY,
+            "missing: the quaternion [w, x, y, z] that turns optical axes into base_link's",
+        );
+    }
+    let [w, x, y, z] = table.numbers::<4>(KEY)?;
+    let quaternion = Quaternion::new(w, x, y, z);
+    if (quaternion.norm() - 1.0).abs() > UNIT_TOLERANCE {
+        table.note(
+            KEY,
+            format!("a rotation has length 1; this has {:.4}", quaternion.norm()),
+        );
+        return None;
+    }
+    Some(UnitQuaternion::from_quaternion(quaternion))
+}
+
+fn measured_focal(table: &Reader<'_, '_>, camera_height_px: u32) -> Option<MeasuredFocal> {
+    let focal = table.number("measured_focal_px", 1.0..=LONGEST_FOCAL_PX);
+    let height = table.integer("measured_focal_image_height_px", 1..=LARGEST_SIDE_PX);
+    Some(MeasuredFocal {
+        focal_px: focal?,
+        image_height_px: height.unwrap_or(camera_height_px),
+    })
+}
+
+fn read_source(table: &Reader<'_, '_>) -> Option<SourceConfig> {
+    let start = match table.text("start_stamp") {
+        None => DEFAULT_START,
+        Some(text) => match text.parse() {
+            Ok(start) => start,
+            Err(error) => {
+                table.note("start_stamp", format!("{error}"));
+                return None;
+            }
+        },
+    };
+    let rate_hz = table.number("rate_hz", 0.001..=1000.0);
+    match (table.path("images"), table.path("video")) {
+        (Some(folder), None) => {
+            let Some(rate) = rate_hz.and_then(FrameRate::from_hz) else {
+                table.note("rate_hz", "missing: frames per second of the images");
+                return None;
+            };
+            Some(SourceConfig::Images {
+                folder,
+                rate,
+                start,
+            })
+        }
+        (None, Some(file)) => Some(SourceConfig::Video { file, start }),
+        (Some(_), Some(_)) => {
+            table.note("video", "a camera has one source: `images` or `video`");
+            None
+        }
+        (None, None) => {
+            table.note(
+                "images",
+                "missing: name a folder of `images` or a `video` file",
+            );
+            None
+        }
+    }
+}

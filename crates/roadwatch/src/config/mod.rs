@@ -1,0 +1,117 @@
+//! Configuration: what the user typed, checked whole, as what it means.
+
+pub mod cameras;
+pub mod detector;
+mod environment;
+pub mod locate;
+mod mistake;
+pub mod node;
+mod notes;
+mod reader;
+
+pub use cameras::{CameraConfig, RigConfig, SourceConfig};
+pub use detector::DetectorConfig;
+pub use environment::Environment;
+pub use locate::LocateConfig;
+pub use mistake::{Mistake, Mistakes};
+pub use node::NodeConfig;
+pub use notes::Notes;
+
+use reader::{Document, Reader};
+use roadwatch_pipeline::PipelineOptions;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    time::Duration,
+};
+
+/// Longer than this no round is worth waiting for, seconds.
+const LONGEST_SCENE_TIMEOUT_SECS: f64 = 60.0;
+
+/// A configuration as far as it could be understood, with the mistakes found on the way.
+///
+/// What could be understood is still opened, so that one run shows everything that is wrong.
+#[derive(Debug, Clone)]
+pub struct Config {
+    /// Mistakes so far, and where keys stand.
+    pub notes: Notes,
+    /// `[node]`.
+    pub node: NodeConfig,
+    /// `[detector]`; `None` when there is a mistake in it.
+    pub detector: Option<DetectorConfig>,
+    /// `[rig]` and `[[camera]]`; `None` when there is a mistake in them.
+    pub rig: Option<RigConfig>,
+    /// `[locate]`.
+    pub locate: LocateConfig,
+    /// `[scene] timeout_secs`.
+    pub scene_timeout: Duration,
+}
+
+impl Config {
+    /// Reads a file. `dataset` replaces `rig.dataset`.
+    ///
+    /// # Errors
+    /// When the file cannot be read or is not TOML.
+    pub fn load(
+        file: &Path,
+        dataset: Option<PathBuf>,
+        environment: &Environment,
+    ) -> Result<Self, Mistakes> {
+        let text = fs::read_to_string(file)
+            .map_err(|error| Mistakes::about_file(file, format!("cannot be read: {error}")))?;
+        Self::parse(file, &text, dataset, environment)
+    }
+
+    /// Reads the text of a file.
+    ///
+    /// # Errors
+    /// When the text is not TOML.
+    pub fn parse(
+        file: &Path,
+        text: &str,
+        dataset: Option<PathBuf>,
+        environment: &Environment,
+    ) -> Result<Self, Mistakes> {
+        let document = Document::new(file, text, environment);
+        let table = document.parse()?;
+        let mut config = read(
+            Reader::root(&document, &table),
+            Notes::new(file, text, table.get_ref()),
+            dataset,
+        );
+        config.notes.extend(document.into_mistakes());
+        Ok(config)
+    }
+}
+
+fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<PathBuf>) -> Config {
+    let sections = ["node", "detector", "rig", "locate", "scene"].map(|key| root.table(key));
+    let [node, detector, rig, locate, scene] = &sections;
+    let camera_tables = root.tables("camera");
+    let head = cameras::read_head(rig, dataset);
+    let rig_config = cameras::read(rig, head, &camera_tables);
+    let cameras = rig_config.as_ref().map_or(1, |rig| rig.cameras.len());
+    if !detector.is_present() {
+        root.note(
+            "detector",
+            "missing: add a [detector] table with `model = \"….onnx\"`",
+        );
+    }
+    let timeout = scene.number("timeout_secs", 0.001..=LONGEST_SCENE_TIMEOUT_SECS);
+    let config = Config {
+        notes,
+        node: node::read(node),
+        detector: detector::read(detector, cameras),
+        rig: rig_config,
+        locate: locate::read(locate),
+        scene_timeout: timeout.map_or(
+            PipelineOptions::DEFAULT_SCENE_TIMEOUT,
+            Duration::from_secs_f64,
+        ),
+    };
+    root.finish();
+    for reader in sections.into_iter().chain(camera_tables) {
+        reader.finish();
+    }
+    config
+}

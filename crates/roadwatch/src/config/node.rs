@@ -1,0 +1,73 @@
+//! `[node]`: how the daemon appears in ROS 2.
+
+use super::reader::Reader;
+use roadwatch_ros::{
+    Network, RosOptions, Surface, ros_sink::MAX_DOMAIN_ID, surface::DEFAULT_QUEUE_DEPTH,
+};
+
+/// The node as configured.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NodeConfig {
+    /// Names, domain, network.
+    pub options: RosOptions,
+    /// Whether anything is published over DDS.
+    pub publish: bool,
+}
+
+pub(super) fn read(node: &Reader<'_, '_>) -> NodeConfig {
+    let defaults = Surface::default();
+    let text = |key, default: String| node.text(key).map_or(default, str::to_owned);
+    let surface = Surface {
+        node_name: text("name", defaults.node_name),
+        namespace: text("namespace", defaults.namespace),
+        base_frame: text("base_frame", defaults.base_frame),
+        queue_depth: node
+            .integer("queue_depth", 1..=1000)
+            .map_or(DEFAULT_QUEUE_DEPTH, |depth| depth as usize),
+    };
+    if let Err(error) = surface.check() {
+        node.note("name", error.to_string());
+    }
+    let domain_id = node
+        .integer("domain_id", 0..=u32::from(MAX_DOMAIN_ID))
+        .map(|id| id as u16);
+    let localhost_only = node
+        .flag("localhost_only")
+        .unwrap_or_else(|| localhost_only(node));
+    NodeConfig {
+        options: RosOptions {
+            surface,
+            domain_id: domain_id
+                .or_else(|| domain_of_environment(node))
+                .unwrap_or(0),
+            network: if localhost_only {
+                Network::LocalhostOnly
+            } else {
+                Network::AllInterfaces
+            },
+        },
+        publish: node.flag("publish").unwrap_or(true),
+    }
+}
+
+/// `ROS_DOMAIN_ID`, when the configuration does not say.
+fn domain_of_environment(node: &Reader<'_, '_>) -> Option<u16> {
+    if node.has("domain_id") {
+        return None;
+    }
+    let text = node.document().environment().get("ROS_DOMAIN_ID")?;
+    let domain_id = text.trim().parse().ok().filter(|id| *id <= MAX_DOMAIN_ID);
+    if domain_id.is_none() {
+        let what =
+            format!("ROS_DOMAIN_ID is `{text}`; expected a number from 0 to {MAX_DOMAIN_ID}");
+        node.note("domain_id", what);
+    }
+    domain_id
+}
+
+/// `ROS_LOCALHOST_ONLY`, and `ROS_AUTOMATIC_DISCOVERY_RANGE` of Iron and later.
+fn localhost_only(node: &Reader<'_, '_>) -> bool {
+    let environment = node.document().environment();
+    environment.get("ROS_LOCALHOST_ONLY") == Some("1")
+        || environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE") == Some("LOCALHOST")
+}

@@ -1,0 +1,413 @@
+//! Reads a TOML document key by key, collecting every mistake instead of stopping at the first.
+
+use super::{
+    environment::Environment,
+    mistake::{Mistake, Mistakes},
+    notes::line_at,
+};
+use std::{
+    cell::RefCell,
+    collections::BTreeSet,
+    ops::{Range, RangeInclusive},
+    path::{Path, PathBuf},
+};
+use toml::{
+    Spanned,
+    de::{DeTable, DeValue},
+};
+
+/// A key is called a likely slip of another when this many edits or fewer lie between them.
+const SLIP_EDITS: usize = 3;
+
+/// One document: its text, its place, and the mistakes found in it so far.
+pub(super) struct Document<'a> {
+    file: &'a Path,
+    text: &'a str,
+    environment: &'a Environment,
+    mistakes: RefCell<Vec<Mistake>>,
+}
+
+impl<'a> Document<'a> {
+    /// A document without mistakes yet.
+    #[must_use]
+    pub(super) fn new(file: &'a Path, text: &'a str, environment: &'a Environment) -> Self {
+        Self {
+            file,
+            text,
+            environment,
+            mistakes: RefCell::default(),
+        }
+    }
+
+    /// The parsed document.
+    ///
+    /// # Errors
+    /// When the text is not TOML: nothing further can be said then.
+    pub(super) fn parse(&self) -> Result<Spanned<DeTable<'a>>, Mistakes> {
+        DeTable::parse(self.text).map_err(|error| {
+            Mistakes(vec![Mistake {
+                file: self.file.to_owned(),
+                line: error.span().map(|span| self.line(&span)),
+                key: String::new(),
+                what: format!("not valid TOML: {}", error.message()),
+            }])
+        })
+    }
+
+    /// Where the environment can be asked.
+    #[must_use]
+    pub(super) fn environment(&self) -> &'a Environment {
+        self.environment
+    }
+
+    /// Notes a mistake at a place in the text, or about the whole file with `None`.
+    pub(super) fn note(&self, at: Option<&Range<usize>>, key: &str, what: impl Into<String>) {
+        self.mistakes.borrow_mut().push(Mistake {
+            file: self.file.to_owned(),
+            line: at.map(|span| self.line(span)),
+            key: key.to_owned(),
+            what: what.into(),
+        });
+    }
+
+    /// The mistakes, in the order they were found.
+    #[must_use]
+    pub(super) fn into_mistakes(self) -> Vec<Mistake> {
+        self.mistakes.into_inner()
+    }
+
+    fn line(&self, span: &Range<usize>) -> usize {
+        line_at(self.text, span.start)
+    }
+
+    fn folder(&self) -> &Path {
+        self.file.parent().unwrap_or(Path::new(""))
+    }
+}
+
+/// One table of a document.
+///
+/// Each `…` method reads a key: `None` when it is absent, or wrong (then the mistake is noted).
+/// [`Reader::finish`] notes every key that nobody read.
+pub(super) struct Reader<'d, 'a> {
+    document: &'d Document<'a>,
+    table: Option<&'d DeTable<'a>>,
+    span: Option<Range<usize>>,
+    path: String,
+    read: RefCell<BTreeSet<String>>,
+}
+
+impl<'d, 'a> Reader<'d, 'a> {
+    /// A reader of the document's root table.
+    #[must_use]
+    pub(super) fn root(document: &'d Document<'a>, table: &'d Spanned<DeTable<'a>>) -> Self {
+        Self {
+            document,
+            table: Some(table.get_ref()),
+            span: None,
+            path: String::new(),
+            read: RefCell::default(),
+        }
+    }
+
+    /// The document this table is of.
+    #[must_use]
+    pub(super) fn document(&self) -> &'d Document<'a> {
+        self.document
+    }
+
+    /// This table's dotted key; empty for the root.
+    #[must_use]
+    pub(super) fn path_in_file(&self) -> &str {
+        &self.path
+    }
+
+    /// Whether the table is there at all.
+    #[must_use]
+    pub(super) fn is_present(&self) -> bool {
+        self.table.is_some()
+    }
+
+    /// Whether the key is there.
+    #[must_use]
+    pub(super) fn has(&self, key: &str) -> bool {
+        self.table.is_some_and(|table| table.contains_key(key))
+    }
+
+    /// Whether the key is there and a text.
+    #[must_use]
+    pub(super) fn is_text(&self, key: &str) -> bool {
+        self.value(key)
+            .is_some_and(|value| value.get_ref().is_str())
+    }
+
+    /// Notes a mistake at a key's value, or at the table's head when the key is absent.
+    pub(super) fn note(&self, key: &str, what: impl Into<String>) {
+        let at = self.value(key).map(Spanned::span).or(self.span.clone());
+        self.document.note(at.as_ref(), &self.key(key), what);
+    }
+
+    /// A text.
+    pub(super) fn text(&self, key: &str) -> Option<&'d str> {
+        self.typed(key, "a text in quotes", DeValue::as_str)
+    }
+
+    /// A text that must be there.
+    pub(super) fn required_text(&self, key: &str) -> Option<&'d str> {
+        self.required(key, Self::text)
+    }
+
+    /// Yes or no.
+    pub(super) fn flag(&self, key: &str) -> Option<bool> {
+        self.typed(key, "true or false", DeValue::as_bool)
+    }
+
+    /// A number within a range.
+    pub(super) fn number(&self, key: &str, range: RangeInclusive<f64>) -> Option<f64> {
+        let number = self.typed(key, "a number", as_number)?;
+        self.in_range(key, number, &range)
+    }
+
+    /// A number that must be there.
+    pub(super) fn required_number(&self, key: &str, range: RangeInclusive<f64>) -> Option<f64> {
+        self.required(key, |reader, key| reader.number(key, range.clone()))
+    }
+
+    /// A whole number within a range.
+    pub(super) fn integer(&self, key: &str, range: RangeInclusive<u32>) -> Option<u32> {
+        let number = self.typed(key, "a whole number", as_integer)?;
+        let range = f64::from(*range.start())..=f64::from(*range.end());
+        // The range's ends fit `u32`, so what lies between does.
+        self.in_range(key, number as f64, &range)
+            .map(|number| number as u32)
+    }
+
+    /// A whole number that must be there.
+    pub(super) fn required_integer(&self, key: &str, range: RangeInclusive<u32>) -> Option<u32> {
+        self.required(key, |reader, key| reader.integer(key, range.clone()))
+    }
+
+    /// A list of `N` numbers.
+    pub(super) fn numbers<const N: usize>(&self, key: &str) -> Option<[f64; N]> {
+        let what = format!("a list of {N} numbers");
+        let list: Vec<f64> = self.typed(key, &what, as_numbers)?;
+        let found = list.len();
+        list.try_into()
+            .map_err(|_| self.note(key, format!("expected {what}, found {found}")))
+            .ok()
+    }
+
+    /// A list of any number of numbers.
+    pub(super) fn number_list(&self, key: &str) -> Option<Vec<f64>> {
+        self.typed(key, "a list of numbers", as_numbers)
+    }
+
+    /// A list of texts.
+    pub(super) fn texts(&self, key: &str) -> Option<Vec<String>> {
+        self.typed(key, "a list of texts in quotes", |value| {
+            let texts = value.as_array()?.iter();
+            texts
+                .map(|text| text.get_ref().as_str().map(str::to_owned))
+                .collect()
+        })
+    }
+
+    /// One of a few words.
+    pub(super) fn choice<T: Copy>(&self, key: &str, choices: &[(&str, T)]) -> Option<T> {
+        let text = self.text(key)?;
+        let found = choices.iter().find(|(word, _)| *word == text);
+        if found.is_none() {
+            let words: Vec<_> = choices
+                .iter()
+                .map(|(word, _)| format!("`{word}`"))
+                .collect();
+            self.note(
+                key,
+                format!("`{text}` is unknown; choose {}", words.join(", ")),
+            );
+        }
+        found.map(|&(_, value)| value)
+    }
+
+    /// A path, with its variable expanded; relative to the document's folder.
+    pub(super) fn path(&self, key: &str) -> Option<PathBuf> {
+        let text = self.text(key)?;
+        let expanded = self
+            .document
+            .environment
+            .expand_path(text, self.document.folder());
+        expanded.map_err(|what| self.note(key, what)).ok()
+    }
+
+    /// A path that must be there.
+    pub(super) fn required_path(&self, key: &str) -> Option<PathBuf> {
+        self.required(key, Self::path)
+    }
+
+    /// A table; one that is absent reads as empty.
+    #[must_use]
+    pub(super) fn table(&self, key: &str) -> Self {
+        let table = self.typed(key, "a table", DeValue::as_table);
+        self.inner(table, self.value(key).map(Spanned::span), self.key(key))
+    }
+
+    /// The tables of an array of tables, `[[key]]`; none when it is absent.
+    pub(super) fn tables(&self, key: &str) -> Vec<Self> {
+        let Some(list) = self.typed(key, "an array of tables, [[…]]", DeValue::as_array) else {
+            return Vec::new();
+        };
+        let tables = list.iter().enumerate();
+        tables
+            .map(|(at, value)| {
+                let path = format!("{}[{at}]", self.key(key));
+                let table = value.get_ref().as_table();
+                if table.is_none() {
+                    self.document
+                        .note(Some(&value.span()), &path, "expected a table");
+                }
+                self.inner(table, Some(value.span()), path)
+            })
+            .collect()
+    }
+
+    /// The keys of this table whose names are data, such as class names; they count as read.
+    pub(super) fn keys(&self) -> Vec<&'d str> {
+        let keys: Vec<&'d str> = match self.table {
+            Some(table) => table.keys().map(|key| key.get_ref().as_ref()).collect(),
+            None => Vec::new(),
+        };
+        self.read
+            .borrow_mut()
+            .extend(keys.iter().map(|&key| key.to_owned()));
+        keys
+    }
+
+    /// Notes every key that nobody asked for.
+    pub(super) fn finish(self) {
+        let Some(table) = self.table else {
+            return;
+        };
+        let read = self.read.borrow();
+        for key in table.keys() {
+            let name: &str = key.get_ref().as_ref();
+            if !read.contains(name) {
+                let what = match nearest(name, read.iter()) {
+                    Some(near) => format!("unknown key; did you mean `{near}`?"),
+                    None => {
+                        let known: Vec<_> = read.iter().map(String::as_str).collect();
+                        format!("unknown key; this table knows {}", known.join(", "))
+                    }
+                };
+                self.document.note(Some(&key.span()), &self.key(name), what);
+            }
+        }
+    }
+
+    fn inner(
+        &self,
+        table: Option<&'d DeTable<'a>>,
+        span: Option<Range<usize>>,
+        path: String,
+    ) -> Self {
+        Self {
+            document: self.document,
+            table,
+            span,
+            path,
+            read: RefCell::default(),
+        }
+    }
+
+    fn value(&self, key: &str) -> Option<&'d Spanned<DeValue<'a>>> {
+        self.table?.get(key)
+    }
+
+    fn key(&self, key: &str) -> String {
+        if self.path.is_empty() {
+            key.to_owned()
+        } else {
+            format!("{}.{key}", self.path)
+        }
+    }
+
+    fn typed<T>(
+        &self,
+        key: &str,
+        expected: &str,
+        read: impl FnOnce(&'d DeValue<'a>) -> Option<T>,
+    ) -> Option<T> {
+        self.read.borrow_mut().insert(key.to_owned());
+        let value = self.value(key)?;
+        let typed = read(value.get_ref());
+        if typed.is_none() {
+            let found = value.get_ref().type_str();
+            self.note(key, format!("expected {expected}, found {found}"));
+        }
+        typed
+    }
+
+    fn required<T>(&self, key: &str, read: impl FnOnce(&Self, &str) -> Option<T>) -> Option<T> {
+        if self.is_present() && !self.has(key) {
+            self.read.borrow_mut().insert(key.to_owned());
+            self.note(key, "missing");
+            return None;
+        }
+        read(self, key)
+    }
+
+    fn in_range(&self, key: &str, number: f64, range: &RangeInclusive<f64>) -> Option<f64> {
+        let fits = range.contains(&number);
+        if !fits {
+            let (least, most) = (range.start(), range.end());
+            let what = if most.is_infinite() {
+                format!("{number} is too small; the least is {least}")
+            } else {
+                format!("{number} is out of range; expected {least} to {most}")
+            };
+            self.note(key, what);
+        }
+        fits.then_some(number)
+    }
+}
+
+fn as_number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Float(float) => float.as_str().parse().ok(),
+        DeValue::Integer(_) => as_integer(value).map(|integer| integer as f64),
+        _ => None,
+    }
+}
+
+fn as_integer(value: &DeValue<'_>) -> Option<i64> {
+    let integer = value.as_integer()?;
+    i64::from_str_radix(integer.as_str(), integer.radix()).ok()
+}
+
+fn as_numbers(value: &DeValue<'_>) -> Option<Vec<f64>> {
+    value
+        .as_array()?
+        .iter()
+        .map(|number| as_number(number.get_ref()))
+        .collect()
+}
+
+fn nearest<'k>(name: &str, known: impl Iterator<Item = &'k String>) -> Option<&'k str> {
+    let by_distance = known.map(|key| (edits(name, key), key.as_str()));
+    let (distance, key) = by_distance.min()?;
+    (distance <= SLIP_EDITS.min(name.len() / 2)).then_some(key)
+}
+
+/// Levenshtein's distance.
+fn edits(a: &str, b: &str) -> usize {
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.bytes().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, y) in b.bytes().enumerate() {
+            let replaced = diagonal + usize::from(x != y);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}

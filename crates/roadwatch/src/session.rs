@@ -1,0 +1,137 @@
+//! One run of the pipeline: built from a configuration, watched until it ends.
+
+use crate::{
+    clock::{SystemClock, wall_time},
+    config::{Config, Environment, Mistakes},
+    failure::Failure,
+    open,
+};
+use anyhow::Context as _;
+use roadwatch_camera::{DecodeCount, PlaybackOptions};
+use roadwatch_core::{Detector, FrameSource, Locator, Rig};
+use roadwatch_pipeline::{
+    NamedSink, Outcome, PipelineOptions, Running, Stages, perceive::Perceiver, start,
+};
+use roadwatch_reid::LeftToRight;
+use std::{
+    path::PathBuf,
+    sync::Arc,
+    time::{Duration, Instant},
+};
+
+/// How long the pipeline may take to work off what is inside after a stop.
+const DRAIN_TIMEOUT: Duration = Duration::from_secs(10);
+
+/// Everything opened and checked; nothing runs yet.
+pub struct Session {
+    /// The configuration.
+    pub config: Config,
+    /// The rig.
+    pub rig: Arc<Rig>,
+    /// Counts the images that are decoded.
+    pub decodes: DecodeCount,
+    sources: Vec<Box<dyn FrameSource>>,
+    detector: Arc<dyn Detector>,
+    locators: Vec<Box<dyn Locator>>,
+}
+
+impl Session {
+    /// Reads a configuration and opens everything it names.
+    ///
+    /// # Errors
+    /// Every mistake at once.
+    pub fn open(
+        config: &std::path::Path,
+        dataset: Option<PathBuf>,
+        playback: PlaybackOptions,
+    ) -> Result<Self, Mistakes> {
+        let config = Config::load(config, dataset, &Environment::of_process())?;
+        let mut notes = config.notes.clone();
+        let decodes = DecodeCount::default();
+        let detector = open::detector(&config, &mut notes);
+        let locators = open::locators(&config, &mut notes);
+        let sources = open::sources(&config, playback, &decodes, &mut notes);
+        let rig = open::shared_rig(&config);
+        notes.finish()?;
+        match (rig, sources, detector, locators) {
+            (Some(rig), Some(sources), Some(detector), Some(locators)) => Ok(Self {
+                config,
+                rig,
+                decodes,
+                sources,
+                detector: Arc::new(detector),
+                locators,
+            }),
+            _ => unreachable!("what could not be opened was noted"),
+        }
+    }
+
+    /// Starts the pipeline.
+    ///
+    /// # Errors
+    /// When the system gives no thread.
+    pub fn start(
+        self,
+        sinks: Vec<NamedSink>,
+        options: PipelineOptions,
+    ) -> Result<Running, Failure> {
+        let stages = Stages {
+            sources: self.sources,
+            detector: self.detector,
+            perceiver: Perceiver {
+                locators: self.locators,
+                reidentifier: Box::new(LeftToRight::new()),
+            },
+            sinks,
+        };
+        let running = start(stages, options, Arc::new(SystemClock));
+        Ok(running.context("the pipeline cannot be started")?)
+    }
+}
+
+/// Watches a pipeline until it ends, calling `report` about once per `period`; `stop_requested` is asked
+/// in between.
+///
+/// # Errors
+/// When a stage panicked, or what is inside is not worked off within ten seconds of a stop.
+pub fn watch(
+    running: &Running,
+    period: Duration,
+    stop_requested: impl Fn() -> bool,
+    mut report: impl FnMut(&Running),
+) -> Result<(), Failure> {
+    /// How soon a stop is noticed.
+    const LOOK: Duration = Duration::from_millis(50);
+    let mut next_report = Instant::now() + period;
+    let mut drain_until = None;
+    loop {
+        let outcome = running
+            .wait(LOOK)
+            .context("a bug in a stage ended the run")?;
+        if outcome == Outcome::Finished {
+            return Ok(());
+        }
+        if Instant::now() >= next_report {
+            next_report += period;
+            report(running);
+        }
+        match drain_until {
+            None if stop_requested() => {
+                running.stop();
+                drain_until = Some(Instant::now() + DRAIN_TIMEOUT);
+            }
+            Some(until) if Instant::now() >= until => {
+                let alive = running.alive().join(", ");
+                let error = anyhow::anyhow!("still busy 10 s after the stop: {alive}");
+                return Err(Failure::Other(error));
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The stamp of messages that belong to no frame.
+#[must_use]
+pub fn start_stamp() -> roadwatch_core::Timestamp {
+    wall_time()
+}
