@@ -1,1 +1,7 @@
 //! Who is who: the only memory of objects.
+//!
+//! [`LeftToRight`] is the paper's way (METHOD.md, section 7): objects keep their places in the row.
+
+pub mod left_to_right;
+
+pub use left_to_right::LeftToRight;

@@ -1,0 +1,159 @@
+//! Location from the bottom edge of the box on the ground plane.
+
+use crate::{
+    box_noise::BoxNoise,
+    estimate::{Estimate, aside_of_middle, covariance_of_shifts},
+    hull::HullSpec,
+    sizes::ClassSize,
+};
+use nalgebra::{Vector2, Vector3};
+use roadwatch_core::{
+    BoxPx, RigCamera,
+    camera_model::Pixel,
+    space::{Covariance, Point},
+};
+
+/// How well it is known how the camera stands over the ground right now.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MountNoise {
+    /// Standard deviation of the camera's pitch against the ground, radians.
+    pub pitch_rad: f64,
+    /// Standard deviation of the ground's height under the object, metres.
+    pub ground_m: f64,
+}
+
+impl Default for MountNoise {
+    /// One degree: springs let a car pitch by a third of it in ordinary driving, and the road's grade under
+    /// the object differs from that under the wheels by a percent or two. 5 cm is a road's camber.
+    fn default() -> Self {
+        Self {
+            pitch_rad: 1.0_f64.to_radians(),
+            ground_m: 0.05,
+        }
+    }
+}
+
+/// The ground plane under one camera, and how far it can be trusted.
+#[derive(Clone, Debug)]
+pub struct GroundPlane {
+    /// Its height in base_link, metres.
+    pub z_m: f64,
+    /// Beyond this distance from the foot nothing is placed, metres.
+    pub max_range_m: f64,
+    /// How the camera stands over it.
+    pub mount_noise: MountNoise,
+}
+
+/// What one evaluation of the method depends on.
+#[derive(Clone, Copy)]
+struct Inputs {
+    contact: Pixel,
+    pitch_rad: f64,
+    ground_z_m: f64,
+    extent_m: f64,
+}
+
+impl GroundPlane {
+    /// Places a box where the ray through the middle of its bottom edge meets the ground, and beyond by
+    /// half the object's length on the ground, averaged over headings (see
+    /// [`HullSpec::mean_contact_extent_m`]); the centre is half the object's height above the ground.
+    ///
+    /// The covariance follows numerically from the noise of the bottom edge and of the column, the
+    /// camera's pitch, the ground's height, and the unknown heading, which moves both the outline and the
+    /// middle of the box. Where one of them lifts the ray
+    /// above the horizon, the object may be as far as `max_range_m`. `None` above the horizon, beyond
+    /// `max_range_m`, or where the lens model has no ray.
+    #[must_use]
+    pub fn locate(
+        &self,
+        camera: &RigCamera,
+        class: &ClassSize,
+        hull: &HullSpec,
+        (box_px, noise): (&BoxPx, &BoxNoise),
+    ) -> Option<Estimate> {
+        let inputs = Inputs {
+            contact: Pixel::new(box_px.center().x, f64::from(box_px.y_max)),
+            pitch_rad: 0.0,
+            ground_z_m: self.z_m,
+            extent_m: hull.mean_contact_extent_m(class.size),
+        };
+        let place = self.place(camera, &inputs)?;
+        let deviations =
+            self.deviations(inputs, noise, box_px, hull.contact_extent_std_m(class.size));
+        let flat = deviations.map(|pair| self.shift(camera, place, pair));
+        let upright = Vector3::z()
+            * self
+                .mount_noise
+                .ground_m
+                .hypot(class.std_dev.height_m / 2.0);
+        let aside = aside_of_middle(camera, place, class);
+        let shifts = flat.into_iter().chain([aside]);
+        let shifts = shifts.map(|by| Vector3::new(by.x, by.y, 0.0));
+        Some(Estimate {
+            position: Point::new(place.x, place.y, self.z_m + class.size.height_m / 2.0),
+            covariance: Covariance::new(covariance_of_shifts(shifts.chain([upright]))),
+        })
+    }
+
+    /// The inputs with each cause one standard deviation down and up.
+    fn deviations(
+        &self,
+        at: Inputs,
+        noise: &BoxNoise,
+        box_px: &BoxPx,
+        extent_std_m: f64,
+    ) -> [[Inputs; 2]; 5] {
+        let row = Vector2::y() * noise.edge_std_px(box_px);
+        let column = Vector2::x() * noise.center_std_px(box_px);
+        let mount = self.mount_noise;
+        let causes: [&dyn Fn(f64) -> Inputs; 5] = [
+            &|sign| Inputs {
+                contact: at.contact + row * sign,
+                ..at
+            },
+            &|sign| Inputs {
+                contact: at.contact + column * sign,
+                ..at
+            },
+            &|sign| Inputs {
+                pitch_rad: mount.pitch_rad * sign,
+                ..at
+            },
+            &|sign| Inputs {
+                ground_z_m: at.ground_z_m + mount.ground_m * sign,
+                ..at
+            },
+            &|sign| Inputs {
+                extent_m: at.extent_m + extent_std_m * sign,
+                ..at
+            },
+        ];
+        causes.map(|cause| [cause(-1.0), cause(1.0)])
+    }
+
+    fn shift(&self, camera: &RigCamera, at: Vector2<f64>, [down, up]: [Inputs; 2]) -> Vector2<f64> {
+        let foot = camera.base_from_optical.origin().coords.xy().coords;
+        match (self.place(camera, &down), self.place(camera, &up)) {
+            (Some(down), Some(up)) => (up - down) / 2.0,
+            _ => {
+                let away = at - foot;
+                away.normalize() * (self.max_range_m - away.norm())
+            }
+        }
+    }
+
+    /// The object's middle on the ground, in base_link.
+    fn place(&self, camera: &RigCamera, inputs: &Inputs) -> Option<Vector2<f64>> {
+        let ray = camera
+            .base_from_optical
+            .rotate(camera.model.ray(inputs.contact)?);
+        let eye = camera.base_from_optical.origin();
+        let level = ray.xy();
+        let direction = level.try_normalize(f64::EPSILON)?;
+        let elevation_rad = ray.z.atan2(level.norm()) + inputs.pitch_rad;
+        let to_contact_m = (inputs.ground_z_m - eye.z()) / elevation_rad.tan();
+        let range_m = to_contact_m + inputs.extent_m;
+        let meets_ground = elevation_rad < 0.0 && to_contact_m > 0.0 && range_m <= self.max_range_m;
+        meets_ground.then(|| eye.coords.xy().coords + direction * range_m)
+    }
+}

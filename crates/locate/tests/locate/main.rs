@@ -1,0 +1,7 @@
+//! What this crate promises to its callers: one file per promise.
+
+mod common;
+mod contract;
+mod table_accuracy;
+mod table_files;
+mod table_index;

@@ -1,0 +1,142 @@
+//! The paper's baseline: the n-th object from the left keeps the n-th identity.
+
+use roadwatch_core::{
+    BoxPx, CameraId, Detection, Heading, Location, ObjectClass, Oriented, PerFrame, Prior,
+    Reidentifier, Timestamp, Track, TrackId,
+};
+use std::collections::BTreeMap;
+
+/// Bits of an identity that hold the place; no frame has more objects.
+const PLACE_BITS: u32 = 32;
+
+/// Sorts each camera's objects from left to right and gives the n-th the n-th identity (section E of the
+/// paper, Fig. 8).
+///
+/// An identity is `camera << 32 | place`, places counted from 0: the same in every run, and never the
+/// same for two cameras. It says nothing about who somebody is: when a car enters at the left, everybody
+/// moves on by one. Objects side by side keep the order in which they come.
+///
+/// Remembered are the objects of each camera's last frame, no more. Places are counted among all
+/// detections when recalling and among located objects when committing, so a detection that got no
+/// location shifts what those to its right recall: keep classes of unknown size off the allow-list.
+#[derive(Debug, Default)]
+pub struct LeftToRight {
+    rows: BTreeMap<CameraId, Vec<Remembered>>,
+}
+
+/// One place of a row.
+#[derive(Clone, Debug)]
+struct Remembered {
+    class: ObjectClass,
+    /// Measured, never held.
+    location: Option<Measured>,
+    heading: Option<Heading>,
+}
+
+#[derive(Clone, Debug)]
+struct Measured {
+    location: Location,
+    at: Timestamp,
+}
+
+impl LeftToRight {
+    /// Remembers nobody yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    fn remembered(
+        &self,
+        camera: CameraId,
+        place: usize,
+        class: &ObjectClass,
+    ) -> Option<&Remembered> {
+        let one = self.rows.get(&camera)?.get(place)?;
+        (one.class == *class).then_some(one)
+    }
+
+    /// What is known after a frame about the object at a place: a held location is the one measured
+    /// earlier, and keeps the stamp it was measured at.
+    fn remember(
+        &self,
+        seen: &Oriented,
+        camera: CameraId,
+        place: usize,
+        at: Timestamp,
+    ) -> Remembered {
+        let class = &seen.located.detection.class;
+        let before = self.remembered(camera, place, class);
+        let location = &seen.located.location;
+        let measured = if location.held {
+            before.and_then(|before| before.location.clone())
+        } else {
+            Some(Measured {
+                location: location.clone(),
+                at,
+            })
+        };
+        Remembered {
+            class: class.clone(),
+            location: measured,
+            heading: seen.heading.or_else(|| before?.heading),
+        }
+    }
+}
+
+impl Reidentifier for LeftToRight {
+    /// The n-th detection from the left gets what the n-th object of the camera's last frame left behind;
+    /// `None` when there was none, when it was of another class, or when it never had a location.
+    fn recall(&self, seen: &PerFrame<Detection>) -> Vec<Option<Prior>> {
+        let order = places(seen.items.iter().map(|detection| &detection.box_px));
+        let prior = |(detection, place): (&Detection, usize)| {
+            let before = self.remembered(seen.frame.camera, place, &detection.class)?;
+            let measured = before.location.as_ref()?;
+            Some(Prior {
+                location: measured.location.clone(),
+                heading: before.heading,
+                age: seen.frame.captured_at.saturating_since(measured.at),
+            })
+        };
+        seen.items.iter().zip(order).map(prior).collect()
+    }
+
+    /// Items come back in the order they were given in.
+    fn commit(&mut self, seen: PerFrame<Oriented>) -> PerFrame<Track> {
+        let camera = seen.frame.camera;
+        let boxes = seen.items.iter().map(|one| &one.located.detection.box_px);
+        let order = places(boxes);
+        let mut row: Vec<_> = seen.items.iter().zip(&order).collect();
+        row.sort_by_key(|(_, place)| **place);
+        let remember = |(one, place): (&Oriented, &usize)| {
+            self.remember(one, camera, *place, seen.frame.captured_at)
+        };
+        let row = row.into_iter().map(remember).collect();
+        self.rows.insert(camera, row);
+        let track = |(observed, place)| Track {
+            id: identity(camera, place),
+            observed,
+        };
+        PerFrame {
+            items: seen.items.into_iter().zip(order).map(track).collect(),
+            frame: seen.frame,
+        }
+    }
+}
+
+/// The identity of a place in a camera's row.
+fn identity(camera: CameraId, place: usize) -> TrackId {
+    TrackId((u64::from(camera.0) << PLACE_BITS) | place as u64)
+}
+
+/// Each box's place from the left, by its middle; equal middles keep their order.
+fn places<'a>(boxes: impl Iterator<Item = &'a BoxPx>) -> Vec<usize> {
+    let middles: Vec<f64> = boxes.map(|box_px| box_px.center().x).collect();
+    let mut from_left: Vec<usize> = (0..middles.len()).collect();
+    from_left.sort_by(|&a, &b| middles[a].total_cmp(&middles[b]));
+    let mut places = vec![0; from_left.len()];
+    for (place, item) in from_left.into_iter().enumerate() {
+        places[item] = place;
+    }
+    places
+}

@@ -1,0 +1,226 @@
+//! What left-to-right order promises.
+
+use nalgebra::Matrix3;
+use proptest::prelude::*;
+use roadwatch_core::{
+    BoxPx, CameraId, Detection, Frame, Heading, Image, ImageSize, Located, Location, Method,
+    ObjectClass, Oriented, PerFrame, Pixels, Prior, Reidentifier, Score, SizeLwh, Timestamp,
+    TrackId,
+    space::{Covariance, Point},
+};
+use roadwatch_reid::LeftToRight;
+use std::{
+    collections::BTreeSet,
+    time::{Duration, Instant},
+};
+
+fn frame(camera: u8, millis: i64) -> Frame {
+    let size = ImageSize {
+        width_px: 1,
+        height_px: 1,
+    };
+    Frame {
+        camera: CameraId(camera),
+        seq: 0,
+        captured_at: Timestamp::from_nanos(millis * 1_000_000),
+        received_at: Instant::now(),
+        image: Image::decoded(Pixels::new(size, vec![0; 3]).expect("one pixel")),
+    }
+}
+
+fn detection(class: &str, left_px: f32) -> Detection {
+    Detection {
+        class: ObjectClass::new(class),
+        score: Score::new(0.5).expect("a score"),
+        box_px: BoxPx::new(left_px, 0.0, left_px + 10.0, 10.0).expect("a box"),
+    }
+}
+
+fn measured(x_m: f64) -> Location {
+    Location {
+        position: Point::new(x_m, 0.0, 0.75),
+        covariance: Covariance::new(Matrix3::identity()),
+        depth_m: x_m,
+        range_m: x_m,
+        size: SizeLwh {
+            length_m: 5.1,
+            width_m: 1.9,
+            height_m: 1.5,
+        },
+        method: Method::Ground,
+        held: false,
+    }
+}
+
+fn oriented(detection: Detection, location: Location) -> Oriented {
+    Oriented {
+        located: Located {
+            detection,
+            location,
+        },
+        heading: None,
+    }
+}
+
+fn seen(camera: u8, millis: i64, detections: &[Detection]) -> PerFrame<Detection> {
+    PerFrame {
+        frame: frame(camera, millis),
+        items: detections.to_vec(),
+    }
+}
+
+fn cars(lefts_px: &[f32]) -> Vec<Detection> {
+    lefts_px
+        .iter()
+        .map(|&left| detection("car", left))
+        .collect()
+}
+
+/// Commits detections, each measured at its own left edge as metres.
+fn commit(
+    reid: &mut LeftToRight,
+    camera: u8,
+    millis: i64,
+    detections: &[Detection],
+) -> Vec<TrackId> {
+    let locate = |one: &Detection| oriented(one.clone(), measured(one.box_px.x_min.into()));
+    let tracks = reid.commit(PerFrame {
+        frame: frame(camera, millis),
+        items: detections.iter().map(locate).collect(),
+    });
+    let same = tracks.items.iter().zip(detections);
+    assert!(
+        same.clone()
+            .all(|(track, one)| track.observed.located.detection == *one)
+    );
+    tracks.items.iter().map(|track| track.id).collect()
+}
+
+fn remembered_x_m(prior: &Option<Prior>) -> Option<f64> {
+    prior.as_ref().map(|prior| prior.location.position.x())
+}
+
+#[test]
+fn the_nth_from_the_left_keeps_the_nth_identity_and_the_given_order() {
+    let mut reid = LeftToRight::new();
+    let first = commit(&mut reid, 2, 0, &cars(&[300.0, 100.0, 200.0]));
+    let base = 2_u64 << 32;
+    assert_eq!(first, [TrackId(base + 2), TrackId(base), TrackId(base + 1)]);
+    let later = commit(&mut reid, 2, 100, &cars(&[110.0, 210.0, 310.0]));
+    assert_eq!(later, [TrackId(base), TrackId(base + 1), TrackId(base + 2)]);
+}
+
+#[test]
+fn recall_gives_the_nth_the_nth_of_the_last_frame_of_the_same_camera() {
+    let mut reid = LeftToRight::new();
+    commit(&mut reid, 0, 1_000, &cars(&[300.0, 100.0]));
+    commit(&mut reid, 1, 1_050, &cars(&[500.0]));
+    let priors = reid.recall(&seen(0, 1_100, &cars(&[400.0, 320.0, 90.0])));
+    let places: Vec<_> = priors.iter().map(remembered_x_m).collect();
+    assert_eq!(places, [None, Some(300.0), Some(100.0)]);
+    assert_eq!(
+        priors[1].as_ref().map(|prior| prior.age),
+        Some(Duration::from_millis(100))
+    );
+    assert!(reid.recall(&seen(7, 0, &cars(&[1.0])))[0].is_none());
+}
+
+#[test]
+fn another_class_is_somebody_else() {
+    let mut reid = LeftToRight::new();
+    commit(&mut reid, 0, 0, &cars(&[100.0]));
+    let priors = reid.recall(&seen(0, 100, &[detection("person", 100.0)]));
+    assert_eq!(priors, [None]);
+}
+
+#[test]
+fn a_held_location_keeps_the_stamp_it_was_measured_at() {
+    let mut reid = LeftToRight::new();
+    commit(&mut reid, 0, 0, &cars(&[100.0]));
+    for millis in [100, 200, 300] {
+        let priors = reid.recall(&seen(0, millis, &cars(&[100.0])));
+        let prior = priors[0].as_ref().expect("remembered");
+        assert_eq!(prior.age, Duration::from_millis(millis.unsigned_abs()));
+        assert!(!prior.location.held);
+        assert_eq!(prior.location.covariance.matrix, Matrix3::identity());
+        let held = Location {
+            held: true,
+            covariance: Covariance::new(Matrix3::identity() * 9.0),
+            ..prior.location.clone()
+        };
+        reid.commit(PerFrame {
+            frame: frame(0, millis),
+            items: vec![oriented(detection("car", 100.0), held)],
+        });
+    }
+}
+
+#[test]
+fn the_last_heading_stays_until_there_is_a_newer_one() {
+    let mut reid = LeftToRight::new();
+    let heading = Heading {
+        yaw_rad: 1.0,
+        std_dev_rad: 0.1,
+    };
+    let items = vec![Oriented {
+        heading: Some(heading),
+        ..oriented(detection("car", 100.0), measured(100.0))
+    }];
+    reid.commit(PerFrame {
+        frame: frame(0, 0),
+        items,
+    });
+    commit(&mut reid, 0, 100, &cars(&[101.0]));
+    let priors = reid.recall(&seen(0, 200, &cars(&[102.0])));
+    assert_eq!(
+        priors[0].as_ref().and_then(|prior| prior.heading),
+        Some(heading)
+    );
+}
+
+#[test]
+fn an_empty_frame_forgets_everybody_and_a_stamp_from_the_past_is_no_age() {
+    let mut reid = LeftToRight::new();
+    commit(&mut reid, 0, 1_000, &cars(&[100.0]));
+    let early = reid.recall(&seen(0, 900, &cars(&[100.0])));
+    assert_eq!(
+        early[0].as_ref().map(|prior| prior.age),
+        Some(Duration::ZERO)
+    );
+    commit(&mut reid, 0, 1_100, &[]);
+    assert_eq!(reid.recall(&seen(0, 1_200, &cars(&[100.0]))), [None]);
+}
+
+/// Whole pixels, so that equal middles occur.
+fn lefts() -> impl Strategy<Value = Vec<f32>> {
+    prop::collection::vec((0..30_u8).prop_map(f32::from), 0..40)
+}
+
+proptest! {
+    #[test]
+    fn identities_are_unique_and_ascend_from_left_to_right(lefts in lefts(), camera in 0..255_u8) {
+        let ids = commit(&mut LeftToRight::new(), camera, 0, &cars(&lefts));
+        prop_assert_eq!(ids.iter().collect::<BTreeSet<_>>().len(), lefts.len());
+        for (a, id_a) in lefts.iter().zip(&ids) {
+            for (b, id_b) in lefts.iter().zip(&ids) {
+                prop_assert!(a >= b || id_a < id_b);
+            }
+        }
+        let places: BTreeSet<_> = ids.iter().map(|id| id.0 & u64::from(u32::MAX)).collect();
+        prop_assert!(places.into_iter().eq(0..lefts.len() as u64));
+    }
+
+    #[test]
+    fn the_same_frame_again_recalls_each_object_as_itself(lefts in lefts()) {
+        let mut reid = LeftToRight::new();
+        let mut items = Vec::new();
+        for (number, one) in cars(&lefts).into_iter().enumerate() {
+            items.push(oriented(one, measured(number as f64)));
+        }
+        reid.commit(PerFrame { frame: frame(0, 0), items });
+        let priors = reid.recall(&seen(0, 0, &cars(&lefts)));
+        for (number, prior) in priors.iter().enumerate() {
+            prop_assert_eq!(remembered_x_m(prior), Some(number as f64));
+        }
+    }
+}
