@@ -7,6 +7,7 @@
 pub mod camera_model;
 pub mod detection;
 pub mod distortion;
+mod error_chain;
 pub mod frame;
 pub mod location;
 pub mod name;
@@ -20,6 +21,7 @@ pub mod time;
 pub use camera_model::{CameraModel, ImageSize, Intrinsics};
 pub use detection::{BoxPx, Detection, Score};
 pub use distortion::Distortion;
+pub use error_chain::error_chain;
 pub use frame::{CameraId, DecodeError, DecodeImage, Frame, Image, PerFrame, Pixels};
 pub use location::{Heading, Located, Location, Method, Oriented, Prior, SizeLwh};
 pub use name::CameraName;

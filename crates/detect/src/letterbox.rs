@@ -65,7 +65,15 @@ impl Letterbox {
     pub fn new(image: ImageSize, input: ImageSize, placement: Placement, values: Values) -> Self {
         let gain = (f64::from(input.width_px) / f64::from(image.width_px))
             .min(f64::from(input.height_px) / f64::from(image.height_px));
-        let resized = |side: u32| ((f64::from(side) * gain).round() as usize).max(1);
+        let resized = |side: u32| {
+            let exact = f64::from(side) * gain;
+            // Each family's own rounding, which its training saw.
+            let whole = match placement {
+                Placement::Centred => exact.round_ties_even(),
+                Placement::TopLeft => exact.floor(),
+            };
+            (whole as usize).max(1)
+        };
         let (width, height) = (resized(image.width_px), resized(image.height_px));
         let bar = |input: u32, resized: usize| match placement {
             // YOLOv5's own rounding: an odd remainder goes to the far side.

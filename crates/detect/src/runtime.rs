@@ -1,6 +1,12 @@
 //! ONNX Runtime's shared library: looked for first, so that its absence is an error and not a panic.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::{Mutex, PoisonError},
+};
+
+/// ONNX Runtime allows one environment per process.
+static LOADED: Mutex<Option<Runtime>> = Mutex::new(None);
 
 /// ONNX Runtime, loaded. Cheap to clone; the first one loaded serves the whole process.
 #[derive(Clone)]
@@ -31,11 +37,21 @@ pub enum RuntimeError {
 }
 
 impl Runtime {
-    /// Loads the first library of `candidates` that exists.
+    /// Loads the first library of `candidates` that exists, unless this process has loaded one already.
     ///
     /// # Errors
     /// When none exists, or the first that does is not ONNX Runtime 1.22 or later.
     pub fn load(candidates: &[PathBuf]) -> Result<Self, RuntimeError> {
+        let mut loaded = LOADED.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(runtime) = loaded.as_ref() {
+            return Ok(runtime.clone());
+        }
+        let runtime = Self::load_first(candidates)?;
+        *loaded = Some(runtime.clone());
+        Ok(runtime)
+    }
+
+    fn load_first(candidates: &[PathBuf]) -> Result<Self, RuntimeError> {
         let Some(library) = candidates.iter().find(|path| path.is_file()) else {
             return Err(RuntimeError::NotFound(candidates.to_vec()));
         };

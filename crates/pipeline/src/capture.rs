@@ -6,7 +6,7 @@ use crate::{
     stop::Stop,
     warn_limit::WarnLimit,
 };
-use roadwatch_core::{Clock, FrameSource, SourceError};
+use roadwatch_core::{Clock, FrameSource, SourceError, error_chain};
 use std::{error::Error, sync::Arc, time::Duration};
 
 /// How often a waiting source looks up, so that a stop takes effect.
@@ -64,9 +64,14 @@ impl Capture {
         }
     }
 
-    fn warn(&self, warnings: &mut WarnLimit, what: &str, cause: &(dyn Error + Send + Sync)) {
+    fn warn(&self, warnings: &mut WarnLimit, what: &str, cause: &(dyn Error + 'static)) {
         if let Some(suppressed) = warnings.allow(self.clock.now()) {
-            tracing::warn!(camera = self.inbox.camera().0, error = %cause, suppressed, "{what}");
+            tracing::warn!(
+                camera = self.inbox.camera().0,
+                error = error_chain(cause),
+                suppressed,
+                "{what}"
+            );
         }
     }
 }

@@ -6,7 +6,9 @@ use crate::{
     metrics::{DropReason, Edge, Metrics},
     warn_limit::WarnLimit,
 };
-use roadwatch_core::{CameraId, Clock, DetectError, Detection, Detector, Frame, PerFrame};
+use roadwatch_core::{
+    CameraId, Clock, DetectError, Detection, Detector, Frame, PerFrame, error_chain,
+};
 use std::{
     sync::{Arc, Condvar, Mutex, PoisonError, mpsc::SyncSender},
     time::Instant,
@@ -144,7 +146,7 @@ impl Lane {
         };
         self.metrics.dropped(camera, reason);
         if let Some(suppressed) = warnings.allow(self.clock.now()) {
-            tracing::warn!(camera = camera.0, %reason, %error, suppressed, "frame dropped");
+            tracing::warn!(camera = camera.0, %reason, error = error_chain(&error), suppressed, "frame dropped");
         }
         None
     }

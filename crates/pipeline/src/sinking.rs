@@ -1,9 +1,8 @@
 //! Sinks: a thread and a bounded queue each, so that none slows perception or another.
 
 use crate::{metrics::Metrics, options::Overload, warn_limit::WarnLimit};
-use roadwatch_core::{Clock, Output, Sink};
+use roadwatch_core::{Clock, Output, Sink, error_chain};
 use std::{
-    error::Error,
     sync::{
         Arc,
         mpsc::{Receiver, SyncSender, TrySendError},
@@ -62,7 +61,7 @@ impl Sinking {
                 Err(error) => {
                     self.metrics.sink_failed(self.at);
                     if let Some(suppressed) = warnings.allow(self.clock.now()) {
-                        let cause = chain(&error);
+                        let cause = error_chain(&error);
                         tracing::warn!(sink = self.name, error = cause, suppressed, "output lost");
                     }
                 }
@@ -70,18 +69,11 @@ impl Sinking {
         }
         if let Err(error) = self.sink.finish() {
             self.metrics.sink_failed(self.at);
-            tracing::error!(sink = self.name, error = chain(&error), "sink not finished");
+            tracing::error!(
+                sink = self.name,
+                error = error_chain(&error),
+                "sink not finished"
+            );
         }
     }
-}
-
-/// An error with its causes on one line.
-fn chain(error: &dyn Error) -> String {
-    let mut text = error.to_string();
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        text = format!("{text}: {error}");
-        cause = error.source();
-    }
-    text
 }

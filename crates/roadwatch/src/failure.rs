@@ -1,6 +1,7 @@
 //! How commands fail, and with which exit code.
 
 use crate::config::Mistakes;
+use roadwatch_core::error_chain;
 use std::process::ExitCode;
 
 /// `EX_CONFIG` of `sysexits.h`: a supervisor need not try again before somebody changed the configuration.
@@ -15,7 +16,7 @@ pub enum Failure {
     #[error(transparent)]
     Mistakes(#[from] Mistakes),
     /// Anything else, with its causes.
-    #[error("{0:#}")]
+    #[error("{}", error_chain(.0.as_ref()))]
     Other(#[from] anyhow::Error),
 }
 

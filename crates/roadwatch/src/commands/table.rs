@@ -9,8 +9,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use roadwatch_camera::read_rig_file;
 use roadwatch_core::{BoxPx, ObjectClass, RigCamera};
 use roadwatch_locate::{
-    ClassSizes, GridSpec, HullSpec, LocationTable, SizeGroup, TableIndex, TableQuery, TableRow,
-    Weight, build_table,
+    ClassSizes, GridSpec, HullSpec, LocationTable, SizeGroup, TableIndex, TableQuery, Weight,
+    build_table,
     table::{CsvOrigin, Split},
 };
 use std::{path::Path, sync::Arc};
@@ -41,7 +41,7 @@ pub fn build(args: &TableBuildArgs) -> Result<(), Failure> {
                 ground_z_m: args.ground_z_m,
                 group: &group,
             };
-            LocationTable::read_csv(csv, origin).map_err(anyhow::Error::from)?
+            LocationTable::read_csv(csv, origin).with_context(|| csv.display().to_string())?
         }
         None => project(args, &camera, group, &HullSpec::for_class(&class))?,
     };
@@ -123,24 +123,25 @@ pub fn inspect(args: &TableInspectArgs) -> Result<(), Failure> {
     );
     println!("rows      {}", table.rows().len());
     println!("grid      {} m", header.grid.step_m);
-    let columns: [(&str, fn(&TableRow) -> f32); 3] = [
-        ("LocX", |row| row.loc_x_m),
-        ("LocY", |row| row.loc_y_m),
-        ("Distance", |row| row.distance_m),
-    ];
-    for (name, column) in columns {
-        let values = || table.rows().iter().map(column);
-        let (least, most) = (
-            values().fold(f32::INFINITY, f32::min),
-            values().fold(f32::NEG_INFINITY, f32::max),
-        );
-        println!("{name:<10}{least:.1} to {most:.1} m");
-    }
+    let rows = table.rows();
+    print_range("LocX", rows.iter().map(|row| row.loc_x_m));
+    print_range("LocY", rows.iter().map(|row| row.loc_y_m));
+    print_range("Distance", rows.iter().map(|row| row.distance_m));
     if let Some(csv) = &args.export {
-        table.write_csv(csv).map_err(anyhow::Error::from)?;
+        table
+            .write_csv(csv)
+            .with_context(|| csv.display().to_string())?;
         println!("exported  {}", csv.display());
     }
     Ok(())
+}
+
+fn print_range(name: &str, metres: impl Iterator<Item = f32>) {
+    let range = metres.fold(
+        (f32::INFINITY, f32::NEG_INFINITY),
+        |(least, most), value| (least.min(value), most.max(value)),
+    );
+    println!("{name:<10}{:.1} to {:.1} m", range.0, range.1);
 }
 
 /// Prints the row that a box matches best. Halves are split at the middle of the image, as the paper has it.

@@ -19,6 +19,9 @@ const FARTHEST_M: f64 = 1e4;
 /// Stamp of a recording's first frame when none is given: a year that nobody takes for real.
 const DEFAULT_START: Timestamp = Timestamp::from_nanos(0);
 
+/// Key of cameras that no table of their own configures.
+const DATASET_KEY: &str = "rig.dataset";
+
 /// What feeds a camera.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SourceConfig {
@@ -68,24 +71,37 @@ pub struct RigConfig {
 
 /// What `[rig]` says by itself.
 pub(super) struct RigHead {
-    pub(super) dataset: Option<Arc<RigDataset>>,
-    pub(super) ground_z_m: f64,
+    dataset: DatasetState,
+    ground_z_m: f64,
     /// The dataset came from the command line: `[[camera]]` tables may then name cameras it has not.
-    pub(super) overridden: bool,
+    overridden: bool,
+}
+
+enum DatasetState {
+    /// None is named.
+    Absent,
+    /// The one named cannot be opened, so nothing can be said of its cameras.
+    Broken,
+    Open(Arc<RigDataset>),
 }
 
 pub(super) fn read_head(rig: &Reader<'_, '_>, dataset_override: Option<PathBuf>) -> RigHead {
     let configured = rig.path("dataset");
     let overridden = dataset_override.is_some();
-    let folder = dataset_override.or(configured);
-    let dataset = folder.and_then(|folder| {
-        let opened = RigDataset::open(&folder);
-        opened
-            .map_err(|error| rig.note("dataset", error.to_string()))
-            .ok()
-    });
+    let dataset = match dataset_override
+        .or(configured)
+        .as_deref()
+        .map(RigDataset::open)
+    {
+        None => DatasetState::Absent,
+        Some(Ok(dataset)) => DatasetState::Open(Arc::new(dataset)),
+        Some(Err(error)) => {
+            rig.note("dataset", error.to_string());
+            DatasetState::Broken
+        }
+    };
     RigHead {
-        dataset: dataset.map(Arc::new),
+        dataset,
         ground_z_m: rig
             .number("ground_z_m", -FARTHEST_M..=FARTHEST_M)
             .unwrap_or(0.0),
@@ -96,53 +112,63 @@ pub(super) fn read_head(rig: &Reader<'_, '_>, dataset_override: Option<PathBuf>)
 /// `None` when the rig cannot be; every mistake is noted.
 pub(super) fn read(
     rig: &Reader<'_, '_>,
-    head: RigHead,
+    head: &RigHead,
     tables: &[Reader<'_, '_>],
 ) -> Option<RigConfig> {
-    let mut cameras: Vec<(RigCamera, CameraConfig)> = head
-        .dataset
+    let dataset = match &head.dataset {
+        DatasetState::Open(dataset) => Some(Arc::clone(dataset)),
+        DatasetState::Absent | DatasetState::Broken => None,
+    };
+    let mut cameras: Vec<_> = dataset
         .iter()
         .flat_map(|dataset| from_dataset(dataset))
         .collect();
     for table in tables {
-        let name = table.required_text("name").and_then(|name| {
-            CameraName::new(name)
-                .map_err(|error| table.note("name", error.to_string()))
-                .ok()
-        });
-        let known = cameras
-            .iter_mut()
-            .find(|(camera, _)| Some(&camera.name) == name.as_ref());
-        match known {
-            Some((camera, config))
-                if matches!(config.source, SourceConfig::Dataset(_)) && !table.has("fx") =>
-            {
-                adjust(table, camera, config);
-            }
-            Some(_) => table.note("name", "another camera has this name"),
-            None if head.dataset.is_some() && !table.has("fx") => {
-                read_config(table, SourceConfig::Dataset(0));
-                measured_focal(table, 1);
-                if !head.overridden {
-                    table.note("name", "the dataset has no camera of this name");
-                }
-            }
-            None => cameras.extend(read_camera(table, name)),
-        }
+        read_table(table, head, &mut cameras);
+    }
+    if matches!(head.dataset, DatasetState::Broken) {
+        return None;
     }
     let (rig_cameras, configs): (Vec<_>, _) = cameras.into_iter().unzip();
     let built = Rig::new(rig_cameras, head.ground_z_m);
-    let built = built.map_err(|error| {
-        rig.note(
-            "dataset",
-            format!("{error}: name a dataset here or add [[camera]] tables"),
-        )
-    });
+    let advice = "name a dataset here or add [[camera]] tables";
+    let built = built.map_err(|error| rig.note("dataset", format!("{error}: {advice}")));
     Some(RigConfig {
         rig: built.ok()?,
         cameras: configs,
-        dataset: head.dataset,
+        dataset,
     })
+}
+
+/// One `[[camera]]` table: with intrinsics a camera of its own, without them more about one of the dataset's.
+fn read_table(
+    table: &Reader<'_, '_>,
+    head: &RigHead,
+    cameras: &mut Vec<(RigCamera, CameraConfig)>,
+) {
+    let name = table.required_text("name").and_then(|name| {
+        CameraName::new(name)
+            .map_err(|error| table.note("name", error.to_string()))
+            .ok()
+    });
+    let known = cameras
+        .iter_mut()
+        .find(|(camera, _)| Some(&camera.name) == name.as_ref());
+    let is_whole = table.has("fx") || matches!(head.dataset, DatasetState::Absent);
+    match known {
+        Some((camera, config)) if !is_whole && config.key == DATASET_KEY => {
+            adjust(table, camera, config)
+        }
+        Some(_) => table.note("name", "another camera has this name"),
+        None if is_whole => cameras.extend(read_camera(table, name)),
+        None => {
+            read_config(table, SourceConfig::Dataset(0));
+            measured_focal(table, 1);
+            if matches!(head.dataset, DatasetState::Open(_)) && !head.overridden {
+                table.note("name", "the dataset has no camera of this name");
+            }
+        }
+    }
 }
 
 fn from_dataset(dataset: &RigDataset) -> Vec<(RigCamera, CameraConfig)> {
@@ -150,7 +176,7 @@ fn from_dataset(dataset: &RigDataset) -> Vec<(RigCamera, CameraConfig)> {
         source: SourceConfig::Dataset(index),
         method: None,
         table: None,
-        key: "rig.dataset".to_owned(),
+        key: DATASET_KEY.to_owned(),
     };
     let cameras = dataset.cameras().iter().enumerate();
     cameras

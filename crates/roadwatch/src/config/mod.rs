@@ -89,7 +89,7 @@ fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<PathBuf>) -> Config 
     let [node, detector, rig, locate, scene] = &sections;
     let camera_tables = root.tables("camera");
     let head = cameras::read_head(rig, dataset);
-    let rig_config = cameras::read(rig, head, &camera_tables);
+    let rig_config = cameras::read(rig, &head, &camera_tables);
     let cameras = rig_config.as_ref().map_or(1, |rig| rig.cameras.len());
     if !detector.is_present() {
         root.note(
