@@ -11,6 +11,8 @@ const PADDING: f32 = 114.0;
 const CHANNELS: usize = 3;
 /// Fixed-point weights sum to this, as in OpenCV (`INTER_RESIZE_COEF_SCALE`).
 const WEIGHT_ONE: f64 = 2048.0;
+/// Bits for one channel in [`mix`]: `255 * 2048` needs 19, and three lanes must fit 64.
+const LANE_BITS: usize = 21;
 
 /// Where the image sits inside the network's input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,15 +50,15 @@ pub struct Letterbox {
 struct Tap {
     near: usize,
     far: usize,
-    near_weight: i32,
-    far_weight: i32,
+    near_weight: u64,
+    far_weight: u64,
 }
 
 /// Scratch rows of [`Letterbox::fill`]; kept between frames so that none is allocated per frame.
 #[derive(Debug, Default)]
 pub struct Scratch {
-    near: Vec<i32>,
-    far: Vec<i32>,
+    near: Vec<i16>,
+    far: Vec<i16>,
 }
 
 impl Letterbox {
@@ -111,7 +113,7 @@ impl Letterbox {
     pub fn fill(&self, image: &Pixels, input: &mut [f32], scratch: &mut Scratch) {
         assert_eq!(image.size(), self.image, "image size of the letterbox");
         assert_eq!(input.len(), Self::input_len(self.input), "input size");
-        input.fill(PADDING * self.scale());
+        self.fill_bars(input);
         let width = self.columns.len();
         scratch.near.resize(CHANNELS * width, 0);
         scratch.far.resize(CHANNELS * width, 0);
@@ -142,6 +144,24 @@ impl Letterbox {
         BoxPx::new(x(x_min), y(y_min), x(x_max), y(y_max))
     }
 
+    fn fill_bars(&self, input: &mut [f32]) {
+        let (width, height) = (self.columns.len(), self.rows.len());
+        let input_width = self.input.width_px as usize;
+        let grey = PADDING * self.scale();
+        for plane in input.chunks_exact_mut(input_width * self.input.height_px as usize) {
+            plane[..self.top * input_width].fill(grey);
+            plane[(self.top + height) * input_width..].fill(grey);
+            let beside = plane
+                .chunks_exact_mut(input_width)
+                .skip(self.top)
+                .take(height);
+            for row in beside {
+                row[..self.left].fill(grey);
+                row[self.left + width..].fill(grey);
+            }
+        }
+    }
+
     fn scale(&self) -> f32 {
         match self.values {
             Values::RgbUnit => 1.0 / 255.0,
@@ -149,23 +169,20 @@ impl Letterbox {
         }
     }
 
-    /// One source row resized horizontally, planar blue, green, red, weighted by 2048.
-    fn resize_row(&self, image: &Pixels, row: usize, out: &mut [i32]) {
+    /// One source row resized horizontally, planar blue, green, red, weighted by 128: OpenCV drops the four
+    /// low bits of its weight of 2048 before it goes on, after which 16 bits are enough.
+    fn resize_row(&self, image: &Pixels, row: usize, out: &mut [i16]) {
         let stride = self.image.width_px as usize * CHANNELS;
-        let source = &image.bgr()[row * stride..(row + 1) * stride];
+        let source = &image.bgr()[row * stride..];
         let width = self.columns.len();
         let (blue, rest) = out.split_at_mut(width);
         let (green, red) = rest.split_at_mut(width);
         let taps = self.columns.iter();
         for (((tap, blue), green), red) in taps.zip(blue).zip(green).zip(red) {
-            let near = &source[tap.near * CHANNELS..][..CHANNELS];
-            let far = &source[tap.far * CHANNELS..][..CHANNELS];
-            let mix = |c: usize| {
-                i32::from(near[c]) * tap.near_weight + i32::from(far[c]) * tap.far_weight
-            };
-            *blue = mix(0);
-            *green = mix(1);
-            *red = mix(2);
+            let mixed = mix(source, *tap);
+            *blue = (mixed >> 4) as i16;
+            *green = (mixed >> (LANE_BITS + 4)) as i16;
+            *red = (mixed >> (2 * LANE_BITS + 4)) as i16;
         }
     }
 
@@ -174,6 +191,7 @@ impl Letterbox {
         let input_width = self.input.width_px as usize;
         let plane_len = input_width * self.input.height_px as usize;
         let scale = self.scale();
+        let weights = (tap.near_weight as i16, tap.far_weight as i16);
         for channel in 0..CHANNELS {
             let plane = match self.values {
                 Values::RgbUnit => CHANNELS - 1 - channel,
@@ -182,30 +200,61 @@ impl Letterbox {
             let start = plane * plane_len + (self.top + y) * input_width + self.left;
             let near = &scratch.near[channel * width..][..width];
             let far = &scratch.far[channel * width..][..width];
-            for ((out, &near), &far) in input[start..start + width].iter_mut().zip(near).zip(far) {
-                // The shifts are OpenCV's; they keep 32 bits enough and set the rounding.
-                let mixed =
-                    ((tap.near_weight * (near >> 4)) >> 16) + ((tap.far_weight * (far >> 4)) >> 16);
-                *out = ((mixed + 2) >> 2) as f32 * scale;
-            }
+            blend(near, far, weights, scale, &mut input[start..start + width]);
         }
     }
 }
 
-/// For each of `resized` positions the two of `source` it lies between, pixel centres aligned.
+/// Two neighbouring pixels mixed horizontally, all three channels in one number: each has a lane of
+/// [`LANE_BITS`], wide enough for 255 times the weights' sum, so that one multiplication does for three.
+fn mix(source: &[u8], tap: Tap) -> u64 {
+    let start = tap.near * CHANNELS;
+    let pair = match source[start..].first_chunk() {
+        Some(bytes) => u64::from_le_bytes(*bytes),
+        None => last_pair(&source[start..]),
+    };
+    let lanes = |pixel: u64| {
+        (pixel & 0xff)
+            | (pixel & 0xff00) << (LANE_BITS - 8)
+            | (pixel & 0xff_0000) << (2 * (LANE_BITS - 8))
+    };
+    lanes(pair) * tap.near_weight + lanes(pair >> (8 * CHANNELS)) * tap.far_weight
+}
+
+/// The last two pixels of an image, behind which there are no eight bytes to read; of an image one pixel
+/// wide, that pixel twice.
+fn last_pair(rest: &[u8]) -> u64 {
+    let byte = |at: usize| rest.get(at).or_else(|| rest.get(at % CHANNELS));
+    (0..2 * CHANNELS).rev().fold(0, |pair, at| {
+        pair << 8 | byte(at).map_or(0, |&byte| u64::from(byte))
+    })
+}
+
+/// Two rows mixed vertically, with OpenCV's shifts, which set the rounding: the high halves of 16-bit
+/// products are one instruction for eight of them, so everything before the floats stays in 16 bits.
+fn blend(near: &[i16], far: &[i16], weights: (i16, i16), scale: f32, out: &mut [f32]) {
+    let high = |weight: i16, value: i16| ((i32::from(weight) * i32::from(value)) >> 16) as i16;
+    for ((out, &near), &far) in out.iter_mut().zip(near).zip(far) {
+        let mixed = high(weights.0, near) + high(weights.1, far);
+        *out = f32::from((mixed + 2) >> 2) * scale;
+    }
+}
+
+/// For each of `resized` positions the two of `source` it lies between, pixel centres aligned. The far one
+/// is the near one's successor, also at the end, where all weight is on it.
 fn taps(source: usize, resized: usize) -> Vec<Tap> {
     let step = source as f64 / resized as f64;
     let last = source - 1;
     (0..resized)
         .map(|at| {
             let position = ((at as f64 + 0.5) * step - 0.5).clamp(0.0, last as f64);
-            let near = (position as usize).min(last);
+            let near = (position as usize).min(last.saturating_sub(1));
             let far_share = position - near as f64;
             Tap {
                 near,
                 far: (near + 1).min(last),
-                near_weight: ((1.0 - far_share) * WEIGHT_ONE).round_ties_even() as i32,
-                far_weight: (far_share * WEIGHT_ONE).round_ties_even() as i32,
+                near_weight: ((1.0 - far_share) * WEIGHT_ONE).round_ties_even() as u64,
+                far_weight: (far_share * WEIGHT_ONE).round_ties_even() as u64,
             }
         })
         .collect()

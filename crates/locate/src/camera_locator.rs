@@ -63,7 +63,7 @@ pub enum LocatorError {
     /// Eq. 1 was never measured for this camera.
     #[error(
         "camera `{0}` has no measured focal value, which method `triangle_measured_f` needs: \
-         measure one (`roadwatch calibrate focal`) or use `triangle_fy`"
+         measure one (F = P * D / W) and set measured_focal_px, or use `triangle_fy`"
     )]
     NoMeasuredFocal(CameraName),
     /// Method `table` without a table.

@@ -29,18 +29,20 @@ impl Perceiving {
     pub(crate) fn run(mut self, detections: &Receiver<Seen>) {
         loop {
             let wait = self.scenes.due_in(self.clock.now());
-            let scene = match receive(detections, wait) {
+            let scenes = match receive(detections, wait) {
                 Ok(seen) => self.step(seen),
-                Err(RecvTimeoutError::Timeout) => self.scenes.tick(self.clock.now()),
+                Err(RecvTimeoutError::Timeout) => {
+                    self.scenes.tick(self.clock.now()).into_iter().collect()
+                }
                 Err(RecvTimeoutError::Disconnected) => break,
             };
-            self.publish_scene(scene);
+            self.publish_scenes(scenes);
         }
         let last = self.scenes.close();
-        self.publish_scene(last);
+        self.publish_scenes(last);
     }
 
-    fn step(&mut self, seen: Seen) -> Option<Scene> {
+    fn step(&mut self, seen: Seen) -> Vec<Scene> {
         let perceived = seen.detections.map(|detections| {
             let received_at = detections.frame.received_at;
             let perceived = Arc::new(self.perceiver.perceive(detections));
@@ -63,8 +65,8 @@ impl Perceiving {
             .offer(seen.camera, perceived, &seen.live, self.clock.now())
     }
 
-    fn publish_scene(&self, scene: Option<Scene>) {
-        if let Some(scene) = scene {
+    fn publish_scenes(&self, scenes: impl IntoIterator<Item = Scene>) {
+        for scene in scenes {
             self.metrics.scene();
             self.fanout.send(&Output::Scene(Arc::new(scene)), None);
         }

@@ -30,7 +30,7 @@ pub enum Command {
     Run(RunArgs),
     /// Check a configuration and everything it names; print every mistake with file, line and key.
     Check(ConfigArgs),
-    /// Print the stages, queues, topics and threads a configuration gives.
+    /// Print the cameras, stages, queues and topics a configuration gives.
     Graph(ConfigArgs),
     /// Look-up tables: build, inspect, query.
     #[command(subcommand)]

@@ -1,5 +1,6 @@
 //! `roadwatch check`.
 
+use super::output::say;
 use crate::{cli::ConfigArgs, failure::Failure, session::Session};
 use roadwatch_camera::{Pace, PlaybackOptions, Repeat};
 
@@ -22,7 +23,7 @@ pub fn run(args: &ConfigArgs) -> Result<(), Failure> {
         .iter()
         .map(|camera| camera.name.as_str())
         .collect();
-    println!(
+    say!(
         "{}: no mistakes; {} cameras: {}",
         args.config.display(),
         cameras.len(),

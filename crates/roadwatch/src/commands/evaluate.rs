@@ -1,5 +1,6 @@
 //! `roadwatch evaluate`.
 
+use super::output::say;
 use crate::{
     cli::EvaluateArgs,
     config::{Config, Mistakes},
@@ -73,9 +74,9 @@ pub fn run(args: &EvaluateArgs) -> Result<(), Failure> {
         .write(&args.out)
         .context("the evaluation is done but not kept")?;
     if args.json {
-        println!("{:#}", report.to_json());
+        say!("{:#}", report.to_json());
     } else {
-        println!("{}", report.to_markdown());
+        say!("{}", report.to_markdown());
     }
     eprintln!(
         "written: {0}/report.json, {0}/report.md",

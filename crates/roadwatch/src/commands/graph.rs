@@ -1,6 +1,7 @@
 //! `roadwatch graph`.
 
 use super::check::NOT_PLAYED;
+use super::output::say;
 use crate::{cli::ConfigArgs, failure::Failure, session::Session};
 use roadwatch_ros::Messages;
 use std::sync::Arc;
@@ -20,32 +21,32 @@ pub fn run(args: &ConfigArgs) -> Result<(), Failure> {
         .zip(config.rig.iter().flat_map(|rig| &rig.cameras))
     {
         let method = camera_config.method.unwrap_or(config.locate.method);
-        println!(
+        say!(
             "camera {:<14} {}  located by {method}",
             camera.name.as_str(),
             camera.model.size
         );
     }
-    println!("  -> [one slot per camera; realtime: newest wins, lossless: sources wait]");
+    say!("  -> [one slot per camera; realtime: newest wins, lossless: sources wait]");
     if let Some(detector) = &config.detector {
         let options = &detector.options;
         let threads = options.network.threads;
-        println!(
+        say!(
             "detect   {} on {threads} threads, two lanes",
             options.model.display()
         );
     }
-    println!("  -> [FIFO, 2 frames]");
-    println!("perceive recall, locate, identify (left to right), one step for the whole rig");
-    println!("  -> [FIFO per sink, full: realtime drops and counts, lossless waits]");
+    say!("  -> [FIFO, 2 frames]");
+    say!("perceive recall, locate, identify (left to right), one step for the whole rig");
+    say!("  -> [FIFO per sink, full: realtime drops and counts, lossless waits]");
     let messages = Messages::new(Arc::clone(&session.rig), surface).map_err(anyhow::Error::from)?;
-    println!(
+    say!(
         "publish  node {}, domain {}",
         surface.private_prefix(),
         config.node.options.domain_id
     );
     for topic in messages.topics() {
-        println!("         {:<48} {}", topic.name, topic.kind.ros_type());
+        say!("         {:<48} {}", topic.name, topic.kind.ros_type());
     }
     Ok(())
 }

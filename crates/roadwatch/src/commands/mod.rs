@@ -4,5 +4,6 @@ pub mod check;
 pub mod evaluate;
 pub mod graph;
 pub mod models;
+mod output;
 pub mod run;
 pub mod table;

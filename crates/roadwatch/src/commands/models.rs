@@ -1,5 +1,6 @@
 //! `roadwatch models`.
 
+use super::output::say;
 use crate::{
     cli::ModelsVerifyArgs,
     config::{Environment, detector::runtime_places},
@@ -51,18 +52,18 @@ pub fn verify(args: &ModelsVerifyArgs) -> Result<(), Failure> {
         }
         None => "none in the file; set detector.class_names".to_owned(),
     };
-    println!("model     {}", args.model.display());
-    println!("head      {}, {} boxes", head.family(), head.boxes());
-    println!("classes   {}: {names}", head.classes());
-    println!("input     {}, batch {batch}", network.input_size());
-    println!("runtime   {}", runtime.library().display());
-    println!(
+    say!("model     {}", args.model.display());
+    say!("head      {}, {} boxes", head.family(), head.boxes());
+    say!("classes   {}: {names}", head.classes());
+    say!("input     {}, batch {batch}", network.input_size());
+    say!("runtime   {}", runtime.library().display());
+    say!(
         "provider  {}, {} threads",
         network.provider(),
         options.threads
     );
     let times = time_runs(&mut network, args.runs).context("the model opens but does not run")?;
-    println!("speed     {}", speed_text(times));
+    say!("speed     {}", speed_text(times));
     Ok(())
 }
 

@@ -1,5 +1,6 @@
 //! `roadwatch run`.
 
+use super::output::say;
 use crate::{
     cli::{Pace, RunArgs},
     clock::wall_time,
@@ -54,7 +55,7 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     let took = began.elapsed();
     eprintln!("{}", status::summary(&rig, running.metrics(), took));
     if args.json {
-        println!(
+        say!(
             "{:#}",
             status::to_json(&rig, running.metrics(), took, decodes.get())
         );

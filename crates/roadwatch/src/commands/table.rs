@@ -1,5 +1,6 @@
 //! `roadwatch table`.
 
+use super::output::say;
 use crate::{
     cli::{TableBuildArgs, TableInspectArgs, TableQueryArgs},
     failure::Failure,
@@ -46,7 +47,7 @@ pub fn build(args: &TableBuildArgs) -> Result<(), Failure> {
         None => project(args, &camera, group, &HullSpec::for_class(&class))?,
     };
     table.write(&args.out).map_err(anyhow::Error::from)?;
-    println!(
+    say!(
         "{}: {} rows for camera {}",
         args.out.display(),
         table.rows().len(),
@@ -111,37 +112,38 @@ pub fn inspect(args: &TableInspectArgs) -> Result<(), Failure> {
         .map(ObjectClass::as_str)
         .collect();
     let size = header.group.size;
-    println!("table     {}", args.table.display());
-    println!("camera    {}, {}", header.camera, header.image_size);
-    println!("made      {}", header.made);
-    println!(
+    say!("table     {}", args.table.display());
+    say!("camera    {}, {}", header.camera, header.image_size);
+    say!("made      {}", header.made);
+    say!(
         "objects   {}, {} x {} x {} m",
         classes.join(", "),
         size.length_m,
         size.width_m,
         size.height_m
     );
-    println!("rows      {}", table.rows().len());
-    println!("grid      {} m", header.grid.step_m);
+    say!("rows      {}", table.rows().len());
+    say!("grid      {} m", header.grid.step_m);
     let rows = table.rows();
-    print_range("LocX", rows.iter().map(|row| row.loc_x_m));
-    print_range("LocY", rows.iter().map(|row| row.loc_y_m));
-    print_range("Distance", rows.iter().map(|row| row.distance_m));
+    print_range("LocX", rows.iter().map(|row| row.loc_x_m))?;
+    print_range("LocY", rows.iter().map(|row| row.loc_y_m))?;
+    print_range("Distance", rows.iter().map(|row| row.distance_m))?;
     if let Some(csv) = &args.export {
         table
             .write_csv(csv)
             .with_context(|| csv.display().to_string())?;
-        println!("exported  {}", csv.display());
+        say!("exported  {}", csv.display());
     }
     Ok(())
 }
 
-fn print_range(name: &str, metres: impl Iterator<Item = f32>) {
+fn print_range(name: &str, metres: impl Iterator<Item = f32>) -> Result<(), Failure> {
     let range = metres.fold(
         (f32::INFINITY, f32::NEG_INFINITY),
         |(least, most), value| (least.min(value), most.max(value)),
     );
-    println!("{name:<10}{:.1} to {:.1} m", range.0, range.1);
+    say!("{name:<10}{:.1} to {:.1} m", range.0, range.1);
+    Ok(())
 }
 
 /// Prints the row that a box matches best. Halves are split at the middle of the image, as the paper has it.
@@ -173,9 +175,9 @@ pub fn query(args: &TableQueryArgs) -> Result<(), Failure> {
         .nearest(&query)
         .context("no row of that half matches")?;
     let row = index.row(found);
-    println!("LocX      {:.2} m", row.loc_x_m);
-    println!("LocY      {:.2} m", row.loc_y_m);
-    println!("Distance  {:.2} m", row.distance_m);
-    println!("score     {:.2} px (row {})", found.score, found.row);
+    say!("LocX      {:.2} m", row.loc_x_m);
+    say!("LocY      {:.2} m", row.loc_y_m);
+    say!("Distance  {:.2} m", row.distance_m);
+    say!("score     {:.2} px (row {})", found.score, found.row);
     Ok(())
 }

@@ -126,7 +126,7 @@ pub(super) fn read(
     for table in tables {
         read_table(table, head, &mut cameras);
     }
-    if matches!(head.dataset, DatasetState::Broken) {
+    if matches!(head.dataset, DatasetState::Broken) || (cameras.is_empty() && !tables.is_empty()) {
         return None;
     }
     let (rig_cameras, configs): (Vec<_>, _) = cameras.into_iter().unzip();
@@ -159,7 +159,11 @@ fn read_table(
         Some((camera, config)) if !is_whole && config.key == DATASET_KEY => {
             adjust(table, camera, config)
         }
-        Some(_) => table.note("name", "another camera has this name"),
+        Some(_) => {
+            table.note("name", "another camera has this name");
+            // Which of the two is meant is unknown, so nothing more is said of this one.
+            table.keys();
+        }
         None if is_whole => cameras.extend(read_camera(table, name)),
         None => {
             read_config(table, SourceConfig::Dataset(0));
@@ -236,6 +240,12 @@ fn read_model(table: &Reader<'_, '_>) -> Option<CameraModel> {
     let center = |key| table.required_number(key, -LONGEST_FOCAL_PX..=LONGEST_FOCAL_PX);
     let (fx, fy, cx, cy) = (focal("fx"), focal("fy"), center("cx"), center("cy"));
     let coefficients = table.number_list("distortion").unwrap_or_default();
+    if table.has("distortion") && !table.has("distortion_model") {
+        table.note(
+            "distortion",
+            "needs a distortion_model, such as \"plumb_bob\"",
+        );
+    }
     let lens = Distortion::from_ros(
         table.text("distortion_model").unwrap_or("none"),
         &coefficients,
@@ -281,6 +291,9 @@ fn read_orientation(table: &Reader<'_, '_>) -> Option<UnitQuaternion<f64>> {
 fn measured_focal(table: &Reader<'_, '_>, camera_height_px: u32) -> Option<MeasuredFocal> {
     let focal = table.number("measured_focal_px", 1.0..=LONGEST_FOCAL_PX);
     let height = table.integer("measured_focal_image_height_px", 1..=LARGEST_SIDE_PX);
+    if height.is_some() && !table.has("measured_focal_px") {
+        table.note("measured_focal_image_height_px", "needs measured_focal_px");
+    }
     Some(MeasuredFocal {
         focal_px: focal?,
         image_height_px: height.unwrap_or(camera_height_px),
@@ -311,7 +324,12 @@ fn read_source(table: &Reader<'_, '_>) -> Option<SourceConfig> {
                 start,
             })
         }
-        (None, Some(file)) => Some(SourceConfig::Video { file, start }),
+        (None, Some(file)) => {
+            if rate_hz.is_some() {
+                table.note("rate_hz", "is for images; a video has its own");
+            }
+            Some(SourceConfig::Video { file, start })
+        }
         (Some(_), Some(_)) => {
             table.note("video", "a camera has one source: `images` or `video`");
             None

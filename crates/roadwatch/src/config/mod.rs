@@ -8,6 +8,7 @@ mod mistake;
 pub mod node;
 mod notes;
 mod reader;
+mod values;
 
 pub use cameras::{CameraConfig, RigConfig, SourceConfig};
 pub use detector::DetectorConfig;

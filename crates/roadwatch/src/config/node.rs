@@ -25,9 +25,7 @@ pub(super) fn read(node: &Reader<'_, '_>) -> NodeConfig {
             .integer("queue_depth", 1..=1000)
             .map_or(DEFAULT_QUEUE_DEPTH, |depth| depth as usize),
     };
-    if let Err(error) = surface.check() {
-        node.note("name", error.to_string());
-    }
+    note_refused_names(node, &surface);
     let domain_id = node
         .integer("domain_id", 0..=u32::from(MAX_DOMAIN_ID))
         .map(|id| id as u16);
@@ -47,6 +45,33 @@ pub(super) fn read(node: &Reader<'_, '_>) -> NodeConfig {
             },
         },
         publish: node.flag("publish").unwrap_or(true),
+    }
+}
+
+/// Notes each name that ROS 2 would refuse, at its own key.
+fn note_refused_names(node: &Reader<'_, '_>, surface: &Surface) {
+    let alone = |name: Surface| name.check().err();
+    let defaults = Surface::default;
+    let of_name = alone(Surface {
+        node_name: surface.node_name.clone(),
+        ..defaults()
+    });
+    let of_namespace = alone(Surface {
+        namespace: surface.namespace.clone(),
+        ..defaults()
+    });
+    let of_frame = alone(Surface {
+        base_frame: surface.base_frame.clone(),
+        ..defaults()
+    });
+    for (key, error) in [
+        ("name", of_name),
+        ("namespace", of_namespace),
+        ("base_frame", of_frame),
+    ] {
+        if let Some(error) = error {
+            node.note(key, error.to_string());
+        }
     }
 }
 

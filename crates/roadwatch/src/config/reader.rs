@@ -4,6 +4,7 @@ use super::{
     environment::Environment,
     mistake::{Mistake, Mistakes},
     notes::line_at,
+    values::{as_integer, as_number, as_numbers, nearest},
 };
 use std::{
     cell::RefCell,
@@ -15,9 +16,6 @@ use toml::{
     Spanned,
     de::{DeTable, DeValue},
 };
-
-/// A key is called a likely slip of another when this many edits or fewer lie between them.
-const SLIP_EDITS: usize = 3;
 
 /// One document: its text, its place, and the mistakes found in it so far.
 pub(super) struct Document<'a> {
@@ -189,7 +187,7 @@ impl<'d, 'a> Reader<'d, 'a> {
 
     /// A list of `N` numbers.
     pub(super) fn numbers<const N: usize>(&self, key: &str) -> Option<[f64; N]> {
-        let what = format!("a list of {N} numbers");
+        let what = format!("a list of {N} finite numbers");
         let list: Vec<f64> = self.typed(key, &what, as_numbers)?;
         let found = list.len();
         list.try_into()
@@ -199,7 +197,7 @@ impl<'d, 'a> Reader<'d, 'a> {
 
     /// A list of any number of numbers.
     pub(super) fn number_list(&self, key: &str) -> Option<Vec<f64>> {
-        self.typed(key, "a list of numbers", as_numbers)
+        self.typed(key, "a list of finite numbers", as_numbers)
     }
 
     /// A list of texts.
@@ -368,46 +366,4 @@ impl<'d, 'a> Reader<'d, 'a> {
         }
         fits.then_some(number)
     }
-}
-
-fn as_number(value: &DeValue<'_>) -> Option<f64> {
-    match value {
-        DeValue::Float(float) => float.as_str().parse().ok(),
-        DeValue::Integer(_) => as_integer(value).map(|integer| integer as f64),
-        _ => None,
-    }
-}
-
-fn as_integer(value: &DeValue<'_>) -> Option<i64> {
-    let integer = value.as_integer()?;
-    i64::from_str_radix(integer.as_str(), integer.radix()).ok()
-}
-
-fn as_numbers(value: &DeValue<'_>) -> Option<Vec<f64>> {
-    value
-        .as_array()?
-        .iter()
-        .map(|number| as_number(number.get_ref()))
-        .collect()
-}
-
-fn nearest<'k>(name: &str, known: impl Iterator<Item = &'k String>) -> Option<&'k str> {
-    let by_distance = known.map(|key| (edits(name, key), key.as_str()));
-    let (distance, key) = by_distance.min()?;
-    (distance <= SLIP_EDITS.min(name.len() / 2)).then_some(key)
-}
-
-/// Levenshtein's distance.
-fn edits(a: &str, b: &str) -> usize {
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.bytes().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, y) in b.bytes().enumerate() {
-            let replaced = diagonal + usize::from(x != y);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.len()]
 }
