@@ -168,7 +168,8 @@ fn a_frame_that_is_not_due_waits_for_the_deadline_only() {
                 "{kind}: {answer:?}"
             );
             let late = late.unwrap_or_else(|| panic!("{kind}: answered before the deadline"));
-            assert!(late < Duration::from_millis(100), "{kind}: {late:?} late");
+            // The frame itself is due in twenty seconds; a busy machine is late by far less.
+            assert!(late < Duration::from_secs(5), "{kind}: {late:?} late");
         }
     });
 }

@@ -2,6 +2,7 @@
 
 use roadwatch_camera::{Pace, PlaybackOptions, Player, Repeat, RigDataset};
 use roadwatch_core::{CameraId, FrameSource, Rig, SourceError};
+use std::io::Write as _;
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -33,7 +34,7 @@ fn digits_in<'a>(line: &'a str, camera: &str) -> &'a str {
 #[test]
 fn all_240_frames_play_with_the_digits_of_the_file() {
     let Some(folder) = dataset_folder() else {
-        eprintln!("{SKIPPED}");
+        writeln!(std::io::stderr(), "{SKIPPED}").expect("standard error");
         return;
     };
     let dataset = RigDataset::open(&folder).expect("a dataset");

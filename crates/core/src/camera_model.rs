@@ -37,7 +37,7 @@ pub struct Intrinsics {
     pub cy: f64,
 }
 
-/// A pixel position, corner-based (see the crate's page).
+/// A pixel position: the centre of the top-left pixel is (0, 0) (see the crate's page).
 pub type Pixel = Vector2<f64>;
 
 /// What a camera does to rays: image size, intrinsics, distortion.

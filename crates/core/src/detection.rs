@@ -20,7 +20,14 @@ impl Score {
     }
 }
 
+/// Half a pixel: from the edges that boxes are measured by to the centres that lenses project to.
+const HALF_PIXEL: f64 = 0.5;
+
 /// An upright box in an image, pixels; `min <= max` on both axes.
+///
+/// Its numbers are edges, as detectors and labels give them: 0 is the left edge of the first column and the
+/// image's width the right edge of the last. Pixel positions, which lenses project to, have the *centre* of
+/// the first pixel at 0; [`BoxPx::center`] and its like give those.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoxPx {
     /// Left edge.
@@ -64,13 +71,28 @@ impl BoxPx {
         self.width_px() * self.height_px()
     }
 
-    /// The middle (the paper's `Center_x`, `Center_y`).
+    /// The box between two pixel positions.
+    #[must_use]
+    pub fn between(min: Pixel, max: Pixel) -> Option<Self> {
+        let edge = |position: f64| (position + HALF_PIXEL) as f32;
+        Self::new(edge(min.x), edge(min.y), edge(max.x), edge(max.y))
+    }
+
+    /// The pixel position of the middle (the paper's `Center_x`, `Center_y`).
     #[must_use]
     pub fn center(&self) -> Pixel {
-        Pixel::new(
-            (f64::from(self.x_min) + f64::from(self.x_max)) / 2.0,
-            (f64::from(self.y_min) + f64::from(self.y_max)) / 2.0,
-        )
+        let y = (f64::from(self.y_min) + f64::from(self.y_max)) / 2.0;
+        Pixel::new(self.center_x(), y - HALF_PIXEL)
+    }
+
+    /// The pixel position of the middle of the lower edge.
+    #[must_use]
+    pub fn bottom_center(&self) -> Pixel {
+        Pixel::new(self.center_x(), f64::from(self.y_max) - HALF_PIXEL)
+    }
+
+    fn center_x(&self) -> f64 {
+        (f64::from(self.x_min) + f64::from(self.x_max)) / 2.0 - HALF_PIXEL
     }
 
     /// Intersection over union, `0.0..=1.0`.

@@ -88,12 +88,6 @@ pub trait DecodeImage: Send + Sync {
     fn decode(&self) -> Result<Pixels, DecodeError>;
 }
 
-impl DecodeImage for Pixels {
-    fn decode(&self) -> Result<Pixels, DecodeError> {
-        Ok(self.clone())
-    }
-}
-
 /// An image, decoded when somebody first looks. Clones share it.
 #[derive(Clone)]
 pub struct Image {

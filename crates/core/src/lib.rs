@@ -1,8 +1,8 @@
 //! The vocabulary every Roadwatch crate shares: types, seam traits, camera geometry, the rig, time.
 //!
-//! Nothing here opens a file, reads a clock, waits, or knows ROS. Pixels are corner-based: the centre
-//! of the top-left pixel is (0, 0) and its corner (-0.5, -0.5), so scaling an image by `s` maps a
-//! column `x` to `(x + 0.5) * s - 0.5`.
+//! Nothing here opens a file, reads a clock, waits, or knows ROS. Pixel positions have the centre of the
+//! top-left pixel at (0, 0) and its corner at (-0.5, -0.5), so scaling an image by `s` maps a column `x`
+//! to `(x + 0.5) * s - 0.5`. Boxes are measured by edges instead, see [`BoxPx`].
 
 pub mod camera_model;
 pub mod detection;

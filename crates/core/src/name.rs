@@ -6,10 +6,14 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct CameraName(String);
 
-/// A name that ROS 2 would refuse as a topic token.
+/// Topics of the fused scene have this name where a camera's have the camera's.
+const RESERVED: &str = "scene";
+
+/// A name that ROS 2 would refuse as a topic token, or that is taken.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "`{0}` cannot name a camera: use letters, digits and single underscores, beginning with a letter"
+    "`{0}` cannot name a camera: use letters, digits and single underscores, beginning with a letter; \
+     `scene` is taken by the fused scene's topics"
 )]
 pub struct InvalidName(String);
 
@@ -21,7 +25,8 @@ impl CameraName {
     pub fn new(text: &str) -> Result<Self, InvalidName> {
         let legal = text.starts_with(|c: char| c.is_ascii_alphabetic())
             && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
-            && !text.contains("__");
+            && !text.contains("__")
+            && text != RESERVED;
         if legal {
             Ok(Self(text.to_owned()))
         } else {
@@ -54,7 +59,16 @@ mod tests {
 
     #[test]
     fn names_that_ros_refuses_are_refused() {
-        for bad in ["", "1st", "front left", "front/left", "_x", "a__b", "größe"] {
+        for bad in [
+            "",
+            "1st",
+            "front left",
+            "front/left",
+            "_x",
+            "a__b",
+            "größe",
+            "scene",
+        ] {
             assert!(CameraName::new(bad).is_err(), "{bad}");
         }
         assert!(CameraName::new("front_left2").is_ok());

@@ -71,8 +71,9 @@ pub trait Reidentifier: Send {
     /// What earlier frames know about each detection of this frame, in the same order.
     fn recall(&self, seen: &PerFrame<Detection>) -> Vec<Option<Prior>>;
 
-    /// Takes a frame's objects into memory and gives each its identity.
-    fn commit(&mut self, seen: PerFrame<Oriented>) -> PerFrame<Track>;
+    /// Takes a frame's objects into memory and gives each its identity, in the same order. `unlocated` are
+    /// the frame's other detections: nobody gets to know them, but they stand in the row.
+    fn commit(&mut self, seen: PerFrame<Oriented>, unlocated: &[Detection]) -> PerFrame<Track>;
 }
 
 /// All that was made of one frame.

@@ -73,14 +73,33 @@ pub enum DetectorError {
         /// Names known.
         names: usize,
     },
-    /// A class in the configuration that the model does not know.
-    #[error("`{name}` is not a class of the model; it knows: {known}")]
-    UnknownClass {
-        /// The name.
-        name: String,
+    /// Classes in the configuration that the model does not know.
+    #[error(
+        "{} of the model; it knows: {known}",
+        not_classes(allowed, with_thresholds)
+    )]
+    UnknownClasses {
+        /// Those wanted.
+        allowed: Vec<String>,
+        /// Those with thresholds of their own.
+        with_thresholds: Vec<String>,
         /// The model's classes.
         known: String,
     },
+}
+
+fn not_classes(allowed: &[String], with_thresholds: &[String]) -> String {
+    let names: Vec<_> = allowed
+        .iter()
+        .chain(with_thresholds)
+        .map(|name| format!("`{name}`"))
+        .collect();
+    let are = if names.len() == 1 {
+        "is no class"
+    } else {
+        "are no classes"
+    };
+    format!("{} {are}", names.join(", "))
 }
 
 /// A YOLO network as a [`Detector`]. Calls may overlap: one prepares images while another runs the network.
@@ -187,10 +206,10 @@ impl YoloDetector {
             input, raw, best, ..
         } = work;
         raw.resize_with(self.batch, Vec::new);
+        raw.iter_mut().for_each(Vec::clear);
         let mut network = self.network.lock().unwrap_or_else(PoisonError::into_inner);
         network
             .run(input, images, |at, head, output| {
-                raw[at].clear();
                 head.decode(output, &self.thresholds, best, &mut raw[at]);
             })
             .map_err(|error| error.to_string())
@@ -314,32 +333,38 @@ fn class_names(
 }
 
 fn thresholds(classes: &[ObjectClass], filter: &ClassFilter) -> Result<Vec<f32>, DetectorError> {
-    let number = |name: &str| {
-        let found = classes.iter().position(|class| class.as_str() == name);
-        found.ok_or_else(|| DetectorError::UnknownClass {
-            name: name.to_owned(),
+    let number = |name: &str| classes.iter().position(|class| class.as_str() == name);
+    let unknown = |names: &mut dyn Iterator<Item = &String>| -> Vec<String> {
+        names
+            .filter(|name| number(name).is_none())
+            .cloned()
+            .collect()
+    };
+    let allowed = unknown(&mut filter.allowed.iter().flatten());
+    let with_thresholds = unknown(&mut filter.class_thresholds.iter().map(|(name, _)| name));
+    if !(allowed.is_empty() && with_thresholds.is_empty()) {
+        return Err(DetectorError::UnknownClasses {
+            allowed,
+            with_thresholds,
             known: classes
                 .iter()
                 .map(ObjectClass::as_str)
                 .collect::<Vec<_>>()
                 .join(", "),
-        })
-    };
-    let mut thresholds = match &filter.allowed {
-        None => vec![filter.score_threshold; classes.len()],
-        Some(allowed) => {
-            let mut thresholds = vec![f32::INFINITY; classes.len()];
-            for name in allowed {
-                thresholds[number(name)?] = filter.score_threshold;
-            }
-            thresholds
-        }
-    };
-    for (name, threshold) in &filter.class_thresholds {
-        let number = number(name)?;
-        if thresholds[number].is_finite() {
-            thresholds[number] = *threshold;
-        }
+        });
     }
-    Ok(thresholds)
+    let least = |class: &ObjectClass| {
+        let name = class.as_str();
+        let wanted = filter
+            .allowed
+            .as_ref()
+            .is_none_or(|allowed| allowed.iter().any(|one| one == name));
+        let own = filter.class_thresholds.iter().find(|(one, _)| one == name);
+        match (wanted, own) {
+            (false, _) => f32::INFINITY,
+            (true, Some(&(_, own))) => own,
+            (true, None) => filter.score_threshold,
+        }
+    };
+    Ok(classes.iter().map(least).collect())
 }

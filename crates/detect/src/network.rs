@@ -199,6 +199,12 @@ impl Network {
             .run(ort::inputs![self.input_name.as_str() => tensor])?;
         let (_, output) = outputs[0].try_extract_tensor::<f32>()?;
         let parts = output.chunks_exact(self.head.output_len());
+        if parts.len() < images {
+            let found = parts.len();
+            return Err(ort::Error::new(format!(
+                "outputs for {found} of {images} images"
+            )));
+        }
         for (at, part) in parts.take(images).enumerate() {
             read(at, &self.head, part);
         }
@@ -216,7 +222,8 @@ struct Unchecked {
 
 impl Unchecked {
     fn output_shape(&mut self) -> Result<Vec<i64>, String> {
-        let run_size = self.batch.run_size(1);
+        // As many as a run may ever take: a batch axis can be free in name only.
+        let run_size = self.batch.max();
         let input = vec![0.0_f32; run_size * Letterbox::input_len(self.input_size)];
         let shape = input_shape(run_size, self.input_size);
         let text = |error: ort::Error| error.to_string();
@@ -228,6 +235,11 @@ impl Unchecked {
         let (shape, _) = outputs[0]
             .try_extract_tensor::<f32>()
             .map_err(|error| format!("its output is not a tensor of 32-bit floats ({error})"))?;
+        if shape.first() != Some(&(run_size as i64)) {
+            return Err(format!(
+                "it gives an output of {shape:?} for {run_size} images"
+            ));
+        }
         Ok(shape.to_vec())
     }
 }

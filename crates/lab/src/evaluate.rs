@@ -1,14 +1,14 @@
 //! Evaluation: detections of a whole dataset against its labels, every method side by side.
 
 use crate::{
-    matching::{Matches, TruthFilter, match_image},
+    matching::{TruthFilter, match_image},
     recorder::Recorded,
     report::{DetectionScore, MethodReport, Report},
     score::{Sample, score_distance, score_location, share},
     truth::{Truth, TruthObject},
 };
 use roadwatch_camera::RigDataset;
-use roadwatch_core::{Detection, Locator, Method, Rig, RigCamera};
+use roadwatch_core::{CameraId, Detection, Locator, Method, Rig, RigCamera, Timestamp};
 use std::collections::{BTreeMap, HashMap};
 
 /// A method with its locators, one per camera of the rig.
@@ -29,6 +29,8 @@ pub struct Evaluation<'a> {
     pub truth: &'a Truth,
     /// Which objects are scored.
     pub filter: &'a TruthFilter,
+    /// Only the first frames of each camera were played; `None` when all were.
+    pub frame_limit: Option<u64>,
 }
 
 /// A detection taken for a labelled object that is scored.
@@ -38,28 +40,38 @@ struct Pair<'a> {
     object: &'a TruthObject,
 }
 
-/// Matches everything recorded to the labels, and scores each method on the same matches.
+/// Matches everything recorded to the labels, and scores each method on the same matches. Objects in
+/// images that were lost on the way count as not found.
 #[must_use]
 pub fn evaluate(
     evaluation: &Evaluation<'_>,
     recorded: &[Recorded],
     methods: &[MethodUnderTest],
 ) -> Report {
-    let numbers = frame_numbers(evaluation.dataset);
+    let by_moment: HashMap<_, _> = recorded
+        .iter()
+        .map(|frame| ((frame.camera, frame.captured_at), frame))
+        .collect();
     let mut pairs = Vec::new();
     let mut counts = Counts::default();
-    for frame in recorded {
-        let camera = frame.camera.index();
-        let Some(&number) = numbers.get(&(camera, frame.captured_at.as_nanos())) else {
+    for (camera, captured_at, number) in evaluation.images() {
+        let name = evaluation.rig.camera(camera).name.as_str();
+        let objects = evaluation.truth.objects(number, name);
+        counts.images += 1;
+        counts.objects += objects
+            .iter()
+            .filter(|object| evaluation.filter.admits(object))
+            .count();
+        let Some(frame) = by_moment.get(&(camera, captured_at)) else {
             continue;
         };
-        let name = evaluation.rig.camera(frame.camera).name.as_str();
-        let objects = evaluation.truth.objects(number, name);
         let detections: Vec<&Detection> = frame.detections().collect();
         let matches = match_image(&detections, objects, evaluation.filter);
-        counts.add(&matches, objects, evaluation.filter);
+        counts.perceived += 1;
+        counts.found += matches.pairs.len();
+        counts.false_alarms += matches.false_alarms.len();
         pairs.extend(matches.pairs.iter().map(|&(detection, object)| Pair {
-            camera,
+            camera: camera.index(),
             detection: detections[detection],
             object: &objects[object],
         }));
@@ -72,21 +84,28 @@ pub fn evaluate(
         (tested.method, report)
     });
     Report {
-        frames: recorded.len(),
+        frames: counts.perceived,
+        frames_missing: counts.images - counts.perceived,
         filter: evaluation.filter.clone(),
         detection: counts.score(),
         methods: by_method.collect::<BTreeMap<_, _>>(),
     }
 }
 
-/// Frame numbers by (camera, stamp).
-fn frame_numbers(dataset: &RigDataset) -> HashMap<(usize, i64), u64> {
-    let frames = dataset.frames().iter();
-    let stamps = frames.flat_map(|frame| {
-        let stamps = frame.stamps.iter().enumerate();
-        stamps.filter_map(|(camera, stamp)| Some(((camera, (*stamp)?.as_nanos()), frame.number)))
-    });
-    stamps.collect()
+impl Evaluation<'_> {
+    /// Every image of the dataset up to the limit: camera, stamp, frame number.
+    fn images(&self) -> impl Iterator<Item = (CameraId, Timestamp, u64)> {
+        let limit = self.frame_limit.map_or(usize::MAX, |limit| {
+            usize::try_from(limit).unwrap_or(usize::MAX)
+        });
+        self.rig.ids().flat_map(move |camera| {
+            let frames = self.dataset.frames().iter();
+            let captured = frames.filter_map(move |frame| {
+                Some((camera, frame.stamps[camera.index()]?, frame.number))
+            });
+            captured.take(limit)
+        })
+    }
 }
 
 fn score_method(rig: &Rig, locators: &[Box<dyn Locator>], pairs: &[Pair<'_>]) -> MethodReport {
@@ -114,21 +133,14 @@ fn score_method(rig: &Rig, locators: &[Box<dyn Locator>], pairs: &[Pair<'_>]) ->
 /// Counts of detection. Objects outside the filter count neither for nor against.
 #[derive(Default)]
 struct Counts {
+    images: usize,
+    perceived: usize,
     objects: usize,
     found: usize,
     false_alarms: usize,
 }
 
 impl Counts {
-    fn add(&mut self, matches: &Matches, objects: &[TruthObject], filter: &TruthFilter) {
-        self.objects += objects
-            .iter()
-            .filter(|object| filter.admits(object))
-            .count();
-        self.found += matches.pairs.len();
-        self.false_alarms += matches.false_alarms.len();
-    }
-
     fn score(&self) -> DetectionScore {
         DetectionScore {
             n: self.objects,

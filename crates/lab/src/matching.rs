@@ -39,11 +39,9 @@ impl TruthFilter {
     /// Whether an object is scored.
     #[must_use]
     pub fn admits(&self, object: &TruthObject) -> bool {
-        let height_px = object
-            .box_px
-            .map_or(0.0, |box_px| f64::from(box_px.height_px()));
+        let high_enough = |box_px: BoxPx| f64::from(box_px.height_px()) >= self.min_height_px;
         self.classes.contains(&object.class)
-            && height_px >= self.min_height_px
+            && object.box_px.is_some_and(high_enough)
             && object.occluded <= self.max_occluded
             && object.truncated <= self.max_truncated
     }

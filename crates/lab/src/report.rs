@@ -55,8 +55,10 @@ impl MethodReport {
 /// Everything an evaluation found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
-    /// Images looked at.
+    /// Images perceived.
     pub frames: usize,
+    /// Images of the dataset that were lost on the way; their objects count as not found.
+    pub frames_missing: usize,
     /// Which objects were scored.
     pub filter: TruthFilter,
     /// How well they were found.
@@ -86,6 +88,7 @@ impl Report {
         let unavailable = |report: &MethodReport| json!(report.unavailable);
         json!({
             "frames": self.frames,
+            "frames_missing": self.frames_missing,
             "filter": {
                 "min_height_px": self.filter.min_height_px,
                 "max_occluded": self.filter.max_occluded,
@@ -111,11 +114,12 @@ impl Report {
         let filter = &self.filter;
         let detection = &self.detection;
         let mut text = format!(
-            "# Evaluation\n\n{} images. Objects scored: {}, at least {} px high, at most {} hidden and {} outside the image.\n\n\
+            "# Evaluation\n\n{} images, {} more were lost. Objects scored: {}, at least {} px high, at most {} hidden and {} outside the image.\n\n\
              ## Detection\n\n| objects | found | recall | precision |\n|---|---|---|---|\n| {} | {} | {} | {} |\n\n\
              ## Distance (`range_m`)\n\n\
              | method | n | MAE m | mean rel. | median rel. | bias | > 1.5 m |\n|---|---|---|---|---|---|---|\n",
             self.frames,
+            self.frames_missing,
             filter.classes.join(", "),
             filter.min_height_px,
             percent(Some(filter.max_occluded)),

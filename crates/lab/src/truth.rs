@@ -6,7 +6,7 @@ use roadwatch_core::{
 };
 use serde::Deserialize;
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     fs, io,
     path::{Path, PathBuf},
 };
@@ -103,6 +103,16 @@ impl Truth {
             frames.insert((line.frame, line.camera), objects);
         }
         Ok(Self { frames })
+    }
+
+    /// Every class that is labelled, in order.
+    #[must_use]
+    pub fn classes(&self) -> BTreeSet<&str> {
+        self.frames
+            .values()
+            .flatten()
+            .map(|object| object.class.as_str())
+            .collect()
     }
 
     /// The objects in one image; none where nothing is labelled.

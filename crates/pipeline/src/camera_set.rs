@@ -15,22 +15,10 @@ impl CameraSet {
         self.0[camera.index() / BITS] |= 1 << (camera.index() % BITS);
     }
 
-    /// Whether the camera is in the set.
-    #[must_use]
-    pub fn contains(&self, camera: CameraId) -> bool {
-        self.0[camera.index() / BITS] & (1 << (camera.index() % BITS)) != 0
-    }
-
     /// Whether every camera of this set is in `other`.
     #[must_use]
     pub fn is_subset(&self, other: &Self) -> bool {
         self.0.iter().zip(other.0).all(|(a, b)| a & !b == 0)
-    }
-
-    /// Whether no camera is in the set.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        *self == Self::default()
     }
 }
 

@@ -34,11 +34,11 @@ impl Capture {
             match self.source.next_frame(self.clock.now() + READ_TIMEOUT) {
                 Ok(frame) => {
                     retry = FIRST_RETRY;
-                    self.metrics.captured(camera, self.clock.now());
+                    self.metrics.captured(camera);
                     match self.inbox.put(frame) {
                         Put::Stored => {}
-                        Put::Replaced(_) => self.metrics.dropped(camera, DropReason::Replaced),
-                        Put::Closed(_) => {
+                        Put::Replaced => self.metrics.dropped(camera, DropReason::Replaced),
+                        Put::Closed => {
                             self.metrics.dropped(camera, DropReason::Closed);
                             return;
                         }

@@ -15,7 +15,7 @@ use std::{
 };
 
 /// One lane in the network and one that prepares; a third would only hold frames that grow old.
-pub(crate) const LANES: usize = 2;
+pub const LANES: usize = 2;
 
 /// What became of one taken frame.
 pub(crate) struct Seen {
@@ -111,7 +111,9 @@ impl Lane {
                             live,
                             detected_at,
                         };
-                        self.out.send(seen).is_ok()
+                        let sent = self.out.send(seen).is_ok();
+                        self.inbox.done();
+                        sent
                     })
             });
             if sent != Some(true) {

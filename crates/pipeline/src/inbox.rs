@@ -15,14 +15,14 @@ use std::{
 pub const DOWN_AFTER: Duration = Duration::from_secs(1);
 
 /// What became of a frame that was put into its slot.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Put {
     /// It waits.
     Stored,
-    /// It waits, in the place of this one, which nobody looked at.
-    Replaced(Frame),
-    /// Nobody takes frames any more.
-    Closed(Frame),
+    /// It waits, in the place of an older one, which nobody looked at.
+    Replaced,
+    /// It is gone: nobody takes frames any more.
+    Closed,
 }
 
 /// One frame on its way to the detector.
@@ -55,6 +55,8 @@ struct State {
     slots: Vec<Slot>,
     served: u64,
     tickets: u64,
+    /// Frames taken and not done with.
+    in_work: usize,
     receiver_open: bool,
 }
 
@@ -95,6 +97,7 @@ pub fn inbox(cameras: u8, overload: Overload, clock: Arc<dyn Clock>) -> (Vec<Sen
             slots: (0..cameras).map(slot).collect(),
             served: 0,
             tickets: 0,
+            in_work: 0,
             receiver_open: true,
         }),
         changed: Condvar::new(),
@@ -138,13 +141,17 @@ impl Sender {
             }
         }
         if !state.receiver_open {
-            return Put::Closed(frame);
+            return Put::Closed;
         }
         state.slots[index].last_put = now;
         let replaced = state.slots[index].frame.replace(frame);
         drop(state);
         self.shared.changed.notify_all();
-        replaced.map_or(Put::Stored, Put::Replaced)
+        if replaced.is_some() {
+            Put::Replaced
+        } else {
+            Put::Stored
+        }
     }
 }
 
@@ -176,11 +183,25 @@ impl Receiver {
         }
         self.shared.changed.notify_all();
         let mut state = self.shared.lock();
+        state.in_work += taken.len();
         state.tickets += 1;
         Some(Batch {
             ticket: state.tickets - 1,
             taken,
         })
+    }
+
+    /// Says that a taken frame has gone on or was dropped.
+    pub fn done(&self) {
+        let mut state = self.shared.lock();
+        state.in_work = state.in_work.saturating_sub(1);
+    }
+
+    /// Whether a frame waits or is worked on: then somebody will be heard of soon.
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        let state = self.shared.lock();
+        state.in_work > 0 || state.slots.iter().any(|slot| slot.frame.is_some())
     }
 
     fn take_waiting(&self, max: usize) -> Vec<Taken> {

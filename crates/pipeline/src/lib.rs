@@ -26,8 +26,9 @@ mod stop;
 mod warn_limit;
 
 pub use camera_set::CameraSet;
+pub use detecting::LANES;
 pub use latency::Percentiles;
 pub use metrics::{CameraCounts, DropReason, Edge, Metrics, SinkCounts};
 pub use options::{Overload, PipelineOptions};
 pub use running::{Outcome, Running};
-pub use start::{NamedSink, PipelineError, Stages, start};
+pub use start::{DETECTED_QUEUE_LEN, NamedSink, PipelineError, Stages, start};

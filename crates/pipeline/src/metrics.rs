@@ -4,11 +4,8 @@ use crate::latency::{Latency, Percentiles};
 use roadwatch_core::CameraId;
 use std::{
     fmt,
-    sync::{
-        Mutex, PoisonError,
-        atomic::{AtomicU64, Ordering},
-    },
-    time::{Duration, Instant},
+    sync::atomic::{AtomicU64, Ordering},
+    time::Duration,
 };
 
 /// Why a captured frame was not published.
@@ -129,7 +126,6 @@ struct CameraMetrics {
     lost: AtomicU64,
     disconnected: AtomicU64,
     objects: AtomicU64,
-    last_captured: Mutex<Option<Instant>>,
 }
 
 struct SinkMetrics {
@@ -191,13 +187,6 @@ impl Metrics {
         }
     }
 
-    /// When the camera delivered its newest frame; `None` before its first.
-    #[must_use]
-    pub fn last_captured(&self, camera: CameraId) -> Option<Instant> {
-        let last = &self.cameras[camera.index()].last_captured;
-        *last.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// Latencies of one edge.
     #[must_use]
     pub fn edge(&self, edge: Edge) -> Percentiles {
@@ -232,13 +221,8 @@ impl Metrics {
         load(&self.scenes)
     }
 
-    pub(crate) fn captured(&self, camera: CameraId, at: Instant) {
-        let metrics = &self.cameras[camera.index()];
-        add(&metrics.captured, 1);
-        *metrics
-            .last_captured
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner) = Some(at);
+    pub(crate) fn captured(&self, camera: CameraId) {
+        add(&self.cameras[camera.index()].captured, 1);
     }
 
     pub(crate) fn lost(&self, camera: CameraId) {

@@ -30,10 +30,11 @@ impl Perceiver {
                 None => unlocated.push(detection),
             }
         }
-        let tracks = self.reidentifier.commit(PerFrame {
+        let located = PerFrame {
             frame,
             items: located,
-        });
+        };
+        let tracks = self.reidentifier.commit(located, &unlocated);
         Perceived { tracks, unlocated }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::{
     detecting::Seen,
+    inbox,
     metrics::{Edge, Metrics},
     perceive::Perceiver,
     scene::SceneAssembler,
@@ -10,7 +11,7 @@ use crate::{
 use roadwatch_core::{Clock, Output, Scene};
 use std::{
     sync::{
-        Arc,
+        Arc, Weak,
         mpsc::{Receiver, RecvTimeoutError},
     },
     time::Duration,
@@ -19,6 +20,8 @@ use std::{
 pub(crate) struct Perceiving {
     pub(crate) perceiver: Perceiver,
     pub(crate) scenes: SceneAssembler,
+    /// Ends with the lanes, so that this thread does not keep it open.
+    pub(crate) inbox: Weak<inbox::Receiver>,
     pub(crate) fanout: Fanout,
     pub(crate) metrics: Arc<Metrics>,
     pub(crate) clock: Arc<dyn Clock>,
@@ -32,7 +35,13 @@ impl Perceiving {
             let scenes = match receive(detections, wait) {
                 Ok(seen) => self.step(seen),
                 Err(RecvTimeoutError::Timeout) => {
-                    self.scenes.tick(self.clock.now()).into_iter().collect()
+                    let now = self.clock.now();
+                    if self.is_busy() {
+                        self.scenes.wait_on(now);
+                        Vec::new()
+                    } else {
+                        self.scenes.tick(now).into_iter().collect()
+                    }
                 }
                 Err(RecvTimeoutError::Disconnected) => break,
             };
@@ -40,6 +49,11 @@ impl Perceiving {
         }
         let last = self.scenes.close();
         self.publish_scenes(last);
+    }
+
+    /// Whether a slow network, and not a silent camera, is what keeps this thread waiting.
+    fn is_busy(&self) -> bool {
+        self.inbox.upgrade().is_some_and(|inbox| inbox.is_busy())
     }
 
     fn step(&mut self, seen: Seen) -> Vec<Scene> {

@@ -71,6 +71,11 @@ impl SceneAssembler {
         }
     }
 
+    /// Begins the wait anew: somebody is about to speak.
+    pub fn wait_on(&mut self, now: Instant) {
+        self.last_heard = self.last_heard.map(|_| now);
+    }
+
     /// Time until [`SceneAssembler::tick`] may give a scene; `None` while no round waits.
     #[must_use]
     pub fn due_in(&self, now: Instant) -> Option<Duration> {

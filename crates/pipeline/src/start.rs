@@ -17,13 +17,13 @@ use roadwatch_core::{Clock, Detector, FrameSource, Sink};
 use std::{
     io,
     sync::{
-        Arc,
+        Arc, Weak,
         mpsc::{SyncSender, sync_channel},
     },
 };
 
 /// Frames between detection and perceiving: perceiving is far faster, so one per lane is plenty.
-const DETECTED_QUEUE_LEN: usize = LANES;
+pub const DETECTED_QUEUE_LEN: usize = LANES;
 
 /// A sink with the name it has in metrics and logs.
 pub struct NamedSink {
@@ -104,8 +104,9 @@ pub fn start(
     };
     // From the end to the start, so that each stage finds its outbox.
     let fanout = starting.sinks(sinks)?;
-    let detected = starting.perceiving(perceiver, fanout)?;
     let (senders, inbox) = inbox(cameras, options.overload, clock);
+    let inbox = Arc::new(inbox);
+    let detected = starting.perceiving(perceiver, fanout, Arc::downgrade(&inbox))?;
     starting.lanes(inbox, &detector, &detected)?;
     starting.cameras(sources, senders)?;
     Ok(starting.threads.into_running(metrics, starting.stop))
@@ -148,10 +149,12 @@ impl Starting {
         &mut self,
         perceiver: Perceiver,
         fanout: Fanout,
+        inbox: Weak<Receiver>,
     ) -> Result<SyncSender<Seen>, PipelineError> {
         let (detected, detections) = sync_channel(DETECTED_QUEUE_LEN);
         let step = Perceiving {
             perceiver,
+            inbox,
             scenes: SceneAssembler::new(match self.options.overload {
                 Overload::NewestWins => Some(self.options.scene_timeout),
                 Overload::Wait => None,
@@ -167,11 +170,11 @@ impl Starting {
 
     fn lanes(
         &mut self,
-        inbox: Receiver,
+        inbox: Arc<Receiver>,
         detector: &Arc<dyn Detector>,
         detected: &SyncSender<Seen>,
     ) -> Result<(), PipelineError> {
-        let (inbox, turnstile) = (Arc::new(inbox), Arc::new(Turnstile::default()));
+        let turnstile = Arc::new(Turnstile::default());
         for number in 0..LANES {
             let lane = Lane {
                 inbox: Arc::clone(&inbox),

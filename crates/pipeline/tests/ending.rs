@@ -107,6 +107,36 @@ fn a_silent_camera_holds_up_no_scene() {
 }
 
 #[test]
+fn a_slow_network_does_not_split_a_round() {
+    let options = PipelineOptions {
+        scene_timeout: Duration::from_millis(5),
+        ..PipelineOptions::new(Overload::NewestWins)
+    };
+    let (gate, arrivals, open) = gate();
+    let world = world_with(2, options, Some(gate), (1, Vec::new()));
+    for camera in 0..2 {
+        world.send(camera, 1 + camera as i64);
+        arrivals
+            .recv_timeout(PATIENCE)
+            .expect("the frame reaches the detector");
+    }
+    open.send(()).expect("one passes");
+    let (first, _) = world.outputs.recv_timeout(PATIENCE).expect("a frame");
+    assert!(first.is_some());
+    // Twenty timeouts long the other frame is worked on, and the round stays open.
+    assert!(
+        world
+            .outputs
+            .recv_timeout(Duration::from_millis(100))
+            .is_err()
+    );
+    open.send(()).expect("the other passes");
+    let (second, _) = world.outputs.recv_timeout(PATIENCE).expect("a frame");
+    assert!(second.is_some());
+    assert_eq!(world.outputs.recv_timeout(PATIENCE), Ok((None, 2)));
+}
+
+#[test]
 fn cameras_and_locators_must_be_as_many() {
     let world = world(1, Overload::Wait, None);
     let (_, running) = world.finish();

@@ -6,22 +6,22 @@ use roadwatch_core::{
 };
 use std::collections::BTreeMap;
 
-/// Bits of an identity that hold the place; no frame has more objects.
-const PLACE_BITS: u32 = 32;
+/// Identities of one camera; no frame has more objects. In tens, so that people can read an identity.
+const PLACES: u64 = 10_000;
 
 /// Sorts each camera's objects from left to right and gives the n-th the n-th identity (section E of the
 /// paper, Fig. 8).
 ///
-/// An identity is `camera << 32 | place`, places counted from 0: the same in every run, and never the
-/// same for two cameras. It says nothing about who somebody is: when a car enters at the left, everybody
+/// An identity is `camera * 10000 + place`, both counted from 0 (camera 2's fourth from the left is 20003):
+/// the same in every run, and never the same for two cameras. It says nothing about who somebody is: when a car enters at the left, everybody
 /// moves on by one. Objects side by side keep the order in which they come.
 ///
 /// Remembered are the objects of each camera's last frame, no more. Places are counted among all
-/// detections when recalling and among located objects when committing, so a detection that got no
-/// location shifts what those to its right recall: keep classes of unknown size off the allow-list.
+/// detections, also those that got no location.
 #[derive(Debug, Default)]
 pub struct LeftToRight {
-    rows: BTreeMap<CameraId, Vec<Remembered>>,
+    /// By camera and place.
+    rows: BTreeMap<CameraId, BTreeMap<usize, Remembered>>,
 }
 
 /// One place of a row.
@@ -52,7 +52,7 @@ impl LeftToRight {
         place: usize,
         class: &ObjectClass,
     ) -> Option<&Remembered> {
-        let one = self.rows.get(&camera)?.get(place)?;
+        let one = self.rows.get(&camera)?.get(&place)?;
         (one.class == *class).then_some(one)
     }
 
@@ -102,16 +102,19 @@ impl Reidentifier for LeftToRight {
     }
 
     /// Items come back in the order they were given in.
-    fn commit(&mut self, seen: PerFrame<Oriented>) -> PerFrame<Track> {
+    fn commit(&mut self, seen: PerFrame<Oriented>, unlocated: &[Detection]) -> PerFrame<Track> {
         let camera = seen.frame.camera;
-        let boxes = seen.items.iter().map(|one| &one.located.detection.box_px);
-        let order = places(boxes);
-        let mut row: Vec<_> = seen.items.iter().zip(&order).collect();
-        row.sort_by_key(|(_, place)| **place);
-        let remember = |(one, place): (&Oriented, &usize)| {
-            self.remember(one, camera, *place, seen.frame.captured_at)
+        let located = seen.items.iter().map(|one| &one.located.detection.box_px);
+        let others = unlocated.iter().map(|detection| &detection.box_px);
+        // Of the places of all, those of the located come first.
+        let order = places(located.chain(others));
+        let remember = |(one, &place): (&Oriented, &usize)| {
+            (
+                place,
+                self.remember(one, camera, place, seen.frame.captured_at),
+            )
         };
-        let row = row.into_iter().map(remember).collect();
+        let row = seen.items.iter().zip(&order).map(remember).collect();
         self.rows.insert(camera, row);
         let track = |(observed, place)| Track {
             id: identity(camera, place),
@@ -126,7 +129,7 @@ impl Reidentifier for LeftToRight {
 
 /// The identity of a place in a camera's row.
 fn identity(camera: CameraId, place: usize) -> TrackId {
-    TrackId((u64::from(camera.0) << PLACE_BITS) | place as u64)
+    TrackId(u64::from(camera.0) * PLACES + place as u64)
 }
 
 /// Each box's place from the left, by its middle; equal middles keep their order.

@@ -2,21 +2,19 @@
 //!
 //! Interleaved pairs in one run, medians and ratios: on a shared machine only those mean anything.
 
-use roadwatch::{
-    config::{Config, Environment},
-    session::Session,
-};
+mod drive;
+
+use roadwatch::session::Session;
 use roadwatch_camera::{Pace, PlaybackOptions, Repeat};
 use roadwatch_core::Frame;
 use roadwatch_detect::{
-    Network, Runtime,
-    letterbox::{Letterbox, Placement, Scratch, Values},
+    Network,
+    letterbox::{Letterbox, Scratch},
 };
 use roadwatch_pipeline::{Outcome, Overload, PipelineOptions};
 use rustix::time::{ClockId, clock_gettime};
 use std::{
-    fs,
-    path::{Path, PathBuf},
+    path::Path,
     time::{Duration, Instant},
 };
 
@@ -33,33 +31,21 @@ const PLAYBACK: PlaybackOptions = PlaybackOptions {
 };
 
 fn main() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let folder = tempfile::tempdir().expect("a folder");
-    let config = folder.path().join("bench.toml");
-    let shipped = fs::read_to_string(root.join("config/pandaset.toml")).expect("shipped");
-    let shipped = shipped.replace(
-        "../../shared",
-        &root.join("../shared").display().to_string(),
-    );
-    fs::write(&config, shipped).expect("written");
-    let environment = Environment::of_process();
-    let read = Config::load(&config, None, &environment).expect("a configuration");
-    let (Some(detector), Some(rig)) = (read.detector, read.rig) else {
-        println!("SKIPPED: the shared model and drive are not there; set ROADWATCH_SHARED");
+    let Some(drive) = drive::Drive::open() else {
         return;
     };
-    let runtime = Runtime::load(&detector.runtime_candidates).expect("ONNX Runtime");
-    let network = &detector.options.network;
-    let mut bare = Network::open(&runtime, &detector.options.model, network).expect("the model");
-    let dataset = rig.dataset.expect("a dataset");
-    let images = images(dataset.folder());
-    let parts = Parts::measure(&images, &bare);
-    let tensors = tensors(&images[..TENSORS], &bare);
+    let mut bare = drive.network();
+    let parts = Parts::measure(&drive.frames(), &bare);
+    let frames = drive.frames();
+    let tensors: Vec<_> = frames[..TENSORS]
+        .iter()
+        .map(|frame| drive::tensor(frame, &bare))
+        .collect();
 
     let mut pairs = Vec::new();
     for pair in 0..=PAIRS {
         let bare = run_bare(&mut bare, &tensors);
-        let whole = run_pipeline(&config);
+        let whole = run_pipeline(&drive.config);
         // The first pair warms caches up.
         if pair > 0 {
             println!(
@@ -76,7 +62,7 @@ fn main() {
         }));
     println!(
         "threads inside the network: {} on both sides",
-        network.threads
+        drive.options.network.threads
     );
     println!(
         "alone, CPU per frame: decode {:.2} ms, letterbox {:.2} ms",
@@ -155,18 +141,18 @@ struct Parts {
 }
 
 impl Parts {
-    fn measure(images: &[PathBuf], network: &Network) -> Self {
-        let frames: Vec<Frame> = images.iter().map(|path| frame(path)).collect();
+    /// `frames` must not be decoded yet.
+    fn measure(frames: &[Frame], network: &Network) -> Self {
         let decode = Side::time(frames.len() as u32, || {
-            for frame in &frames {
+            for frame in frames {
                 frame.image.pixels().expect("decodes");
             }
         });
         let mut scratch = Scratch::default();
         let mut input = vec![0.0; Letterbox::input_len(network.input_size())];
-        let letterbox = letterbox(&frames[0], network);
+        let letterbox = drive::letterbox(&frames[0], network);
         let fill = Side::time(frames.len() as u32, || {
-            for frame in &frames {
+            for frame in frames {
                 letterbox.fill(
                     frame.image.pixels().expect("decoded"),
                     &mut input,
@@ -179,66 +165,6 @@ impl Parts {
             letterbox_ms: fill.cpu_ms_per_frame(),
         }
     }
-}
-
-fn letterbox(frame: &Frame, network: &Network) -> Letterbox {
-    let size = frame.image.pixels().expect("decodes").size();
-    Letterbox::new(
-        size,
-        network.input_size(),
-        Placement::Centred,
-        Values::RgbUnit,
-    )
-}
-
-fn tensors(images: &[PathBuf], network: &Network) -> Vec<Vec<f32>> {
-    let tensor = |path: &PathBuf| {
-        let frame = frame(path);
-        let mut input = vec![0.0; Letterbox::input_len(network.input_size())];
-        let pixels = frame.image.pixels().expect("decodes");
-        letterbox(&frame, network).fill(pixels, &mut input, &mut Scratch::default());
-        input
-    };
-    images.iter().map(tensor).collect()
-}
-
-fn frame(path: &Path) -> Frame {
-    use roadwatch_camera::StillImage;
-    use roadwatch_core::{CameraId, Image, ImageSize, Timestamp};
-    let size = ImageSize {
-        width_px: 960,
-        height_px: 540,
-    };
-    let bytes = fs::read(path).expect("an image");
-    Frame {
-        camera: CameraId(0),
-        seq: 0,
-        captured_at: Timestamp::from_nanos(0),
-        received_at: Instant::now(),
-        image: Image::encoded(Box::new(StillImage::new(
-            bytes,
-            size,
-            path.display().to_string(),
-        ))),
-    }
-}
-
-/// Every fifth image of every camera.
-fn images(drive: &Path) -> Vec<PathBuf> {
-    let cameras = [
-        "front_left",
-        "front",
-        "front_right",
-        "right",
-        "back",
-        "left",
-    ];
-    let names = cameras.iter().flat_map(|camera| {
-        (0..40)
-            .step_by(5)
-            .map(move |at| format!("{camera}/{at:04}.jpg"))
-    });
-    names.map(|name| drive.join(name)).collect()
 }
 
 fn median(values: impl Iterator<Item = f64>) -> f64 {

@@ -90,7 +90,7 @@ pub struct RunArgs {
     pub json: bool,
 }
 
-/// Arguments of `evaluate`. The defaults of the filter are the *clean* objects of the method's page.
+/// Arguments of `evaluate`. The defaults of the filter are clean cars: well visible and not small.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  \
     roadwatch evaluate --config config/pandaset.toml -o evaluation")]
@@ -108,10 +108,10 @@ pub struct EvaluateArgs {
     #[arg(long, value_name = "PX", default_value_t = 20.0)]
     pub min_height_px: f64,
     /// Score only objects hidden at most this much, 0 to 1.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.3)]
+    #[arg(long, value_name = "SHARE", default_value_t = 0.3, value_parser = share)]
     pub max_occluded: f64,
     /// Score only objects at most this much outside the image, 0 to 1.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.05)]
+    #[arg(long, value_name = "SHARE", default_value_t = 0.05, value_parser = share)]
     pub max_truncated: f64,
     /// Score only objects of these classes; repeat or separate by commas. What is detected as a car may be a
     /// labelled truck and the other way round.
@@ -128,6 +128,13 @@ pub struct EvaluateArgs {
     /// Print report.json instead of report.md on standard output.
     #[arg(long)]
     pub json: bool,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let share: Option<f64> = text.parse().ok();
+    share
+        .filter(|share| (0.0..=1.0).contains(share))
+        .ok_or_else(|| "expected a share, 0 to 1".to_owned())
 }
 
 /// What to do with look-up tables.

@@ -2,11 +2,15 @@
 
 use crate::config::{CameraConfig, Config, Notes, RigConfig, SourceConfig};
 use roadwatch_camera::{
-    DecodeCount, ImageSequence, Playback, PlaybackOptions, Player, Recording, RigDataset, VideoFile,
+    DecodeCount, ImageSequence, Playback, PlaybackOptions, Player, Recording, RigDataset, Span,
+    VideoFile,
 };
-use roadwatch_core::{CameraId, FrameSource, Locator, Rig, RigCamera};
-use roadwatch_detect::{NetworkError, Runtime, YoloDetector};
+use roadwatch_core::{CameraId, FrameSource, Locator, Rig, RigCamera, Timestamp, error_chain};
+use roadwatch_detect::{DetectorError, NetworkError, Runtime, YoloDetector};
 use std::sync::Arc;
+
+/// Beginning of a rig without any stamp: one second, as tf takes zero for "latest".
+const UNSTAMPED_START: Timestamp = Timestamp::from_nanos(1_000_000_000);
 
 /// Opens the model, or notes why not.
 pub fn detector(config: &Config, notes: &mut Notes) -> Option<YoloDetector> {
@@ -29,19 +33,29 @@ pub fn detector(config: &Config, notes: &mut Notes) -> Option<YoloDetector> {
     match YoloDetector::open(&runtime, &detector.options) {
         Ok(opened) => Some(opened),
         Err(error) => {
-            notes.note(detector_key(&error), error.to_string());
+            for key in detector_keys(&error) {
+                notes.note(key, error_chain(&error));
+            }
             None
         }
     }
 }
 
-fn detector_key(error: &roadwatch_detect::DetectorError) -> &'static str {
-    use roadwatch_detect::DetectorError as E;
+/// The keys that are to blame.
+fn detector_keys(error: &DetectorError) -> Vec<&'static str> {
     match error {
-        E::Network(_) => "detector.model",
-        E::WrongFamily { .. } => "detector.family",
-        E::ClassNames { .. } => "detector.class_names",
-        E::UnknownClass { .. } => "detector.classes",
+        DetectorError::Network(_) => vec!["detector.model"],
+        DetectorError::WrongFamily { .. } => vec!["detector.family"],
+        DetectorError::ClassNames { .. } => vec!["detector.class_names"],
+        DetectorError::UnknownClasses {
+            allowed,
+            with_thresholds,
+            ..
+        } => {
+            let wanted = (!allowed.is_empty()).then_some("detector.classes");
+            let own = (!with_thresholds.is_empty()).then_some("detector.class_thresholds");
+            wanted.into_iter().chain(own).collect()
+        }
     }
 }
 
@@ -74,7 +88,7 @@ enum Opened {
 }
 
 impl Opened {
-    fn span(&self) -> roadwatch_camera::Span {
+    fn span(&self) -> Span {
         match self {
             Self::Images(images) => images.span(),
             Self::Video(video) => video.span(),
@@ -102,22 +116,24 @@ pub fn sources(
         cameras,
         dataset,
     } = config.rig.as_ref()?;
+    let start = default_start(cameras, dataset.as_deref());
     let opened: Vec<Option<Opened>> = rig
         .cameras()
         .iter()
         .zip(cameras)
-        .map(
-            |(camera, config)| match open_source(camera, config, dataset.as_deref(), decodes) {
+        .map(|(camera, config)| {
+            match open_source(camera, config, dataset.as_deref(), (start, decodes)) {
                 Ok(opened) => Some(opened),
                 Err((key, what)) => {
                     notes.note(&format!("{}.{key}", config.key), what);
                     None
                 }
-            },
-        )
+            }
+        })
         .collect();
     let opened: Vec<Opened> = opened.into_iter().collect::<Option<_>>()?;
     let spans: Vec<_> = opened.iter().map(Opened::span).collect();
+    note_lonely(cameras, &spans, notes);
     let playback = Playback::new(playback, &spans);
     let players = rig.ids().zip(opened);
     Some(
@@ -127,11 +143,40 @@ pub fn sources(
     )
 }
 
+/// Where recordings without a start stamp begin: with the dataset, or with the earliest that has one.
+fn default_start(cameras: &[CameraConfig], dataset: Option<&RigDataset>) -> Timestamp {
+    let of_dataset = dataset
+        .and_then(|dataset| dataset.frames().first())
+        .into_iter();
+    let of_dataset = of_dataset.flat_map(|frame| frame.stamps.iter().flatten().copied());
+    let of_cameras = cameras.iter().filter_map(|camera| match camera.source {
+        SourceConfig::Images { start, .. } | SourceConfig::Video { start, .. } => start,
+        SourceConfig::Dataset(_) => None,
+    });
+    of_dataset
+        .chain(of_cameras)
+        .min()
+        .unwrap_or(UNSTAMPED_START)
+}
+
+/// Notes recordings that share no moment with another: played together, one would wait for the other for
+/// as long as lies between them.
+fn note_lonely(cameras: &[CameraConfig], spans: &[Span], notes: &mut Notes) {
+    let meets = |a: &Span, b: &Span| a.first <= b.last && b.first <= a.last;
+    let first = spans.iter().min_by_key(|span| span.first);
+    for (camera, span) in cameras.iter().zip(spans) {
+        if first.is_some_and(|first| !meets(first, span)) {
+            let what = "this recording begins after another of the rig has ended; give both matching start stamps";
+            notes.note(&format!("{}.start_stamp", camera.key), what);
+        }
+    }
+}
+
 fn open_source(
     camera: &RigCamera,
     config: &CameraConfig,
     dataset: Option<&RigDataset>,
-    decodes: &DecodeCount,
+    (default_start, decodes): (Timestamp, &DecodeCount),
 ) -> Result<Opened, (&'static str, String)> {
     let size = camera.model.size;
     match &config.source {
@@ -148,12 +193,14 @@ fn open_source(
             folder,
             rate,
             start,
-        } => ImageSequence::open(folder, size, *rate, *start)
+        } => ImageSequence::open(folder, size, *rate, start.unwrap_or(default_start))
             .map(|images| Opened::Images(images.counting(decodes.clone())))
-            .map_err(|error| ("images", error.to_string())),
-        SourceConfig::Video { file, start } => VideoFile::open(file, size, *start)
-            .map(Opened::Video)
-            .map_err(|error| ("video", error.to_string())),
+            .map_err(|error| ("images", error_chain(&error))),
+        SourceConfig::Video { file, start } => {
+            VideoFile::open(file, size, start.unwrap_or(default_start))
+                .map(Opened::Video)
+                .map_err(|error| ("video", error_chain(&error)))
+        }
     }
 }
 

@@ -105,9 +105,16 @@ pub fn watch(
     let mut next_report = Instant::now() + period;
     let mut drain_until = None;
     loop {
-        let outcome = running
-            .wait(LOOK)
-            .context("a bug in a stage ended the run")?;
+        let outcome = match running.wait(LOOK) {
+            Ok(outcome) => outcome,
+            Err(panicked) => {
+                // The other stages were told to stop; what they hold, a recording above all, is finished.
+                drain(running);
+                return Err(anyhow::Error::new(panicked)
+                    .context("a bug in a stage ended the run")
+                    .into());
+            }
+        };
         if outcome == Outcome::Finished {
             return Ok(());
         }
@@ -126,6 +133,16 @@ pub fn watch(
                 return Err(Failure::Other(error));
             }
             _ => {}
+        }
+    }
+}
+
+/// Waits for the rest of a pipeline in which a stage panicked.
+fn drain(running: &Running) {
+    let until = Instant::now() + DRAIN_TIMEOUT;
+    while Instant::now() < until && !running.alive().is_empty() {
+        if let Err(panicked) = running.wait(DRAIN_TIMEOUT) {
+            tracing::error!(error = %panicked, "another stage ended by a bug");
         }
     }
 }

@@ -3,7 +3,7 @@
 mod support;
 
 use serde_json::Value;
-use std::{fs, path::Path, process::Output};
+use std::{fs, io::Write as _, path::Path, process::Output};
 use support::{
     daemon, pandaset_config, run, run_well, runtime_library, shared, stderr, stdout, write,
 };
@@ -121,11 +121,11 @@ fn models_that_are_none_are_refused_before_the_first_frame() {
         &run(&["check", &wrong_family]),
         &["has a yolov5 head; detector.family says yolov8"],
     );
-    let unknown_class = config.replace("\"person\", ", "\"persn\", ");
-    let unknown_class = write(folder.path(), "config.toml", &unknown_class);
+    let unknown = config.replace("\"person\", \"bicycle\"", "\"persn\", \"bycicle\"");
+    let unknown = write(folder.path(), "config.toml", &unknown);
     expect_mistakes(
-        &run(&["check", &unknown_class]),
-        &["`persn` is not a class of the model"],
+        &run(&["check", &unknown]),
+        &["detector.classes: `persn`, `bycicle` are no classes of the model"],
     );
 }
 
@@ -424,4 +424,120 @@ fn domain_ids_of_the_environment_are_checked() {
             .expect("starts");
         expect_mistakes(&output, &["ROS_DOMAIN_ID is `"]);
     }
+}
+
+#[test]
+fn a_camera_may_not_take_the_scenes_name() {
+    let Some(shared) = shared() else {
+        return;
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let config = pandaset_config(&shared, "publish = false") + "\n[[camera]]\nname = \"scene\"\n";
+    let config = write(folder.path(), "config.toml", &config);
+    expect_mistakes(
+        &run(&["check", &config]),
+        &["camera[0].name: `scene` cannot name a camera"],
+    );
+}
+
+#[test]
+fn recordings_that_share_no_moment_are_refused() {
+    let (Some(shared), Some(_)) = (shared(), runtime_library()) else {
+        return;
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let images = shared.join("data/pandaset-dev/front").display().to_string();
+    let camera = |start: &str| {
+        format!(
+            "\n[[camera]]\nname = \"mast\"\nimages = {images:?}\nrate_hz = 10\n{start}\nwidth = 960\nheight = 540\n\
+             fx = 985\nfy = 985\ncx = 485\ncy = 241\nposition_m = [0, 0, 2]\norientation_wxyz = [0.5, -0.5, 0.5, -0.5]\n"
+        )
+    };
+    let config = pandaset_config(&shared, "publish = false");
+    let beside = write(
+        folder.path(),
+        "beside.toml",
+        &format!("{config}{}", camera("")),
+    );
+    run_well(&["check", &beside]);
+    let long_ago = write(
+        folder.path(),
+        "ago.toml",
+        &format!("{config}{}", camera("start_stamp = \"5.0\"")),
+    );
+    expect_mistakes(
+        &run(&["check", &long_ago]),
+        &["begins after another of the rig has ended"],
+    );
+}
+
+#[test]
+fn filters_that_score_nothing_are_refused() {
+    let (Some(shared), Some(_)) = (shared(), runtime_library()) else {
+        return;
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let config = write(
+        folder.path(),
+        "config.toml",
+        &pandaset_config(&shared, "publish = false"),
+    );
+    let carr = run(&["evaluate", "--config", &config, "--class", "carr"]);
+    assert!(
+        stderr(&carr).contains("--class carr: nothing is labelled so; labelled are"),
+        "{}",
+        stderr(&carr)
+    );
+    let share = run(&["evaluate", "--config", &config, "--max-occluded", "30"]);
+    assert!(
+        stderr(&share).contains("expected a share, 0 to 1"),
+        "{}",
+        stderr(&share)
+    );
+}
+
+/// A disk of a few pages; `None` where this user may not mount one.
+fn small_disk(folder: &Path) -> Option<()> {
+    let mounted = std::process::Command::new("mount")
+        .args(["-t", "tmpfs", "-o", "size=64k", "tmpfs"])
+        .arg(folder)
+        .output();
+    mounted.ok()?.status.success().then_some(())
+}
+
+#[test]
+fn a_disk_that_fills_up_fails_the_run_and_not_perception() {
+    let (Some(shared), Some(_)) = (shared(), runtime_library()) else {
+        return;
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let disk = folder.path().join("disk");
+    fs::create_dir(&disk).expect("a folder");
+    if small_disk(&disk).is_none() {
+        writeln!(
+            std::io::stderr(),
+            "SKIPPED: this user cannot mount a small disk to fill"
+        )
+        .expect("standard error");
+        return;
+    }
+    let config = write(
+        folder.path(),
+        "config.toml",
+        &pandaset_config(&shared, "publish = false"),
+    );
+    let bag = disk.join("bag").display().to_string();
+    let output = run(&[
+        "run", &config, "--pace", "lossless", "--frames", "12", "--bag", &bag, "--json",
+    ]);
+    let unmounted = std::process::Command::new("umount").arg(&disk).status();
+    assert!(unmounted.expect("umount starts").success());
+    let text = stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(
+        text.contains("the bag is not complete") && !text.contains("panicked"),
+        "{text}"
+    );
+    let report: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+    assert_eq!(report["scenes"], 12);
 }

@@ -4,6 +4,7 @@
 mod support;
 
 use serde_json::Value;
+use std::io::Write as _;
 use std::{
     io::{BufRead as _, BufReader},
     path::Path,
@@ -98,7 +99,8 @@ fn cyclone_readers_get_every_topic_also_late_and_after_another_was_killed() {
         .args(["-c", "import cyclonedds"])
         .status();
     if !has_cyclone.expect("python starts").success() {
-        eprintln!("SKIPPED: this Python has no cyclonedds");
+        writeln!(std::io::stderr(), "SKIPPED: this Python has no cyclonedds")
+            .expect("standard error");
         return;
     }
     let folder = tempfile::tempdir().expect("a folder");

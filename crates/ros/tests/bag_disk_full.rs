@@ -5,6 +5,7 @@ mod common;
 
 use roadwatch_core::Sink;
 use roadwatch_ros::{BagSink, LogTime, Surface};
+use std::io::Write as _;
 use std::{fs, path::PathBuf, process::Command, sync::Arc};
 use tempfile::TempDir;
 
@@ -23,7 +24,11 @@ impl SmallDisk {
             .output()
             .is_ok_and(|output| output.status.success());
         if !mounted {
-            eprintln!("SKIPPED: this user cannot mount a small disk to fill");
+            writeln!(
+                std::io::stderr(),
+                "SKIPPED: this user cannot mount a small disk to fill"
+            )
+            .expect("standard error");
             return None;
         }
         Some(Self { scratch })

@@ -141,7 +141,7 @@ impl Reidentifier for NoMemory {
         vec![None; seen.items.len()]
     }
 
-    fn commit(&mut self, seen: PerFrame<Oriented>) -> PerFrame<Track> {
+    fn commit(&mut self, seen: PerFrame<Oriented>, _: &[Detection]) -> PerFrame<Track> {
         let tracks = seen.items.into_iter().zip(0..);
         PerFrame {
             items: tracks

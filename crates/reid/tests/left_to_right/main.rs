@@ -84,10 +84,13 @@ fn commit(
     detections: &[Detection],
 ) -> Vec<TrackId> {
     let locate = |one: &Detection| oriented(one.clone(), measured(one.box_px.x_min.into()));
-    let tracks = reid.commit(PerFrame {
-        frame: frame(camera, millis),
-        items: detections.iter().map(locate).collect(),
-    });
+    let tracks = reid.commit(
+        PerFrame {
+            frame: frame(camera, millis),
+            items: detections.iter().map(locate).collect(),
+        },
+        &[],
+    );
     let same = tracks.items.iter().zip(detections);
     assert!(
         same.clone()
@@ -104,7 +107,7 @@ fn remembered_x_m(prior: &Option<Prior>) -> Option<f64> {
 fn the_nth_from_the_left_keeps_the_nth_identity_and_the_given_order() {
     let mut reid = LeftToRight::new();
     let first = commit(&mut reid, 2, 0, &cars(&[300.0, 100.0, 200.0]));
-    let base = 2_u64 << 32;
+    let base = 20_000;
     assert_eq!(first, [TrackId(base + 2), TrackId(base), TrackId(base + 1)]);
     let later = commit(&mut reid, 2, 100, &cars(&[110.0, 210.0, 310.0]));
     assert_eq!(later, [TrackId(base), TrackId(base + 1), TrackId(base + 2)]);
@@ -148,10 +151,13 @@ fn a_held_location_keeps_the_stamp_it_was_measured_at() {
             covariance: Covariance::new(Matrix3::identity() * 9.0),
             ..prior.location.clone()
         };
-        reid.commit(PerFrame {
-            frame: frame(0, millis),
-            items: vec![oriented(detection("car", 100.0), held)],
-        });
+        reid.commit(
+            PerFrame {
+                frame: frame(0, millis),
+                items: vec![oriented(detection("car", 100.0), held)],
+            },
+            &[],
+        );
     }
 }
 
@@ -166,10 +172,13 @@ fn the_last_heading_stays_until_there_is_a_newer_one() {
         heading: Some(heading),
         ..oriented(detection("car", 100.0), measured(100.0))
     }];
-    reid.commit(PerFrame {
-        frame: frame(0, 0),
-        items,
-    });
+    reid.commit(
+        PerFrame {
+            frame: frame(0, 0),
+            items,
+        },
+        &[],
+    );
     commit(&mut reid, 0, 100, &cars(&[101.0]));
     let priors = reid.recall(&seen(0, 200, &cars(&[102.0])));
     assert_eq!(
@@ -206,7 +215,7 @@ proptest! {
                 prop_assert!(a >= b || id_a < id_b);
             }
         }
-        let places: BTreeSet<_> = ids.iter().map(|id| id.0 & u64::from(u32::MAX)).collect();
+        let places: BTreeSet<_> = ids.iter().map(|id| id.0 % 10_000).collect();
         prop_assert!(places.into_iter().eq(0..lefts.len() as u64));
     }
 
@@ -217,10 +226,38 @@ proptest! {
         for (number, one) in cars(&lefts).into_iter().enumerate() {
             items.push(oriented(one, measured(number as f64)));
         }
-        reid.commit(PerFrame { frame: frame(0, 0), items });
+        reid.commit(PerFrame { frame: frame(0, 0), items }, &[]);
         let priors = reid.recall(&seen(0, 0, &cars(&lefts)));
         for (number, prior) in priors.iter().enumerate() {
             prop_assert_eq!(remembered_x_m(prior), Some(number as f64));
         }
     }
+}
+
+#[test]
+fn what_got_no_location_keeps_its_place_in_the_row() {
+    let mut reid = LeftToRight::new();
+    let row = cars(&[100.0, 200.0, 300.0]);
+    let located = PerFrame {
+        frame: frame(0, 0),
+        items: row[1..]
+            .iter()
+            .map(|car| oriented(car.clone(), measured(f64::from(car.box_px.x_min))))
+            .collect(),
+    };
+    let tracks = reid.commit(located, &row[..1]);
+    assert_eq!(
+        tracks
+            .items
+            .iter()
+            .map(|track| track.id.0)
+            .collect::<Vec<_>>(),
+        [1, 2]
+    );
+    let priors = reid.recall(&seen(0, 100, &row));
+    let places: Vec<_> = priors
+        .iter()
+        .map(|prior| prior.as_ref().map(|prior| prior.location.range_m))
+        .collect();
+    assert_eq!(places, [None, Some(200.0), Some(300.0)]);
 }

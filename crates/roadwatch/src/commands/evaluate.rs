@@ -1,14 +1,13 @@
 //! `roadwatch evaluate`.
 
-use super::output::say;
+use super::{output::say, progress::Progress};
 use crate::{
     cli::EvaluateArgs,
     config::{Config, Mistakes},
     failure::Failure,
     session::{Session, watch},
 };
-use anyhow::Context as _;
-use indicatif::{ProgressBar, ProgressStyle};
+use anyhow::{Context as _, anyhow};
 use roadwatch_camera::{Pace, PlaybackOptions, Repeat, RigDataset};
 use roadwatch_core::Method;
 use roadwatch_lab::{
@@ -34,6 +33,7 @@ pub fn run(args: &EvaluateArgs) -> Result<(), Failure> {
     let config = session.config.clone();
     let dataset = dataset_of(&config, args)?;
     let truth = Truth::read(dataset.folder()).context("nothing can be scored")?;
+    check_classes(args, &truth)?;
     let rig = Arc::clone(&session.rig);
     let recorder = Recorder::default();
     let sink = NamedSink {
@@ -42,7 +42,7 @@ pub fn run(args: &EvaluateArgs) -> Result<(), Failure> {
     };
     let frames = dataset.frames().len() as u64;
     let images = args.frames.map_or(frames, |limit| limit.min(frames)) * rig.cameras().len() as u64;
-    let bar = ProgressBar::new(images).with_style(style());
+    let mut progress = Progress::new(images, "images");
     let running = session.start(vec![sink], PipelineOptions::new(Overload::Wait))?;
     watch(
         &running,
@@ -53,10 +53,10 @@ pub fn run(args: &EvaluateArgs) -> Result<(), Failure> {
                 .ids()
                 .map(|camera| running.metrics().camera(camera).published)
                 .sum();
-            bar.set_position(done);
+            progress.set(done);
         },
     )?;
-    bar.finish_and_clear();
+    progress.finish();
     let filter = TruthFilter {
         min_height_px: args.min_height_px,
         max_occluded: args.max_occluded,
@@ -68,6 +68,7 @@ pub fn run(args: &EvaluateArgs) -> Result<(), Failure> {
         dataset: &dataset,
         truth: &truth,
         filter: &filter,
+        frame_limit: args.frames,
     };
     let report = evaluate(&evaluation, &recorder.take(), &methods(&config));
     report
@@ -85,9 +86,24 @@ pub fn run(args: &EvaluateArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-fn style() -> ProgressStyle {
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} images, {eta} left");
-    style.unwrap_or_else(|_| ProgressStyle::default_bar())
+/// A class that nobody labelled is a slip: its report would be empty.
+fn check_classes(args: &EvaluateArgs, truth: &Truth) -> Result<(), Failure> {
+    let labelled = truth.classes();
+    match args
+        .class
+        .iter()
+        .find(|class| !labelled.contains(class.as_str()))
+    {
+        None => Ok(()),
+        Some(class) => {
+            let labelled: Vec<_> = labelled.into_iter().collect();
+            Err(anyhow!(
+                "--class {class}: nothing is labelled so; labelled are {}",
+                labelled.join(", ")
+            )
+            .into())
+        }
+    }
 }
 
 fn dataset_of(config: &Config, args: &EvaluateArgs) -> Result<Arc<RigDataset>, Mistakes> {

@@ -3,6 +3,7 @@
 use super::check::NOT_PLAYED;
 use super::output::say;
 use crate::{cli::ConfigArgs, failure::Failure, session::Session};
+use roadwatch_pipeline::{DETECTED_QUEUE_LEN, LANES};
 use roadwatch_ros::Messages;
 use std::sync::Arc;
 
@@ -32,11 +33,11 @@ pub fn run(args: &ConfigArgs) -> Result<(), Failure> {
         let options = &detector.options;
         let threads = options.network.threads;
         say!(
-            "detect   {} on {threads} threads, two lanes",
+            "detect   {} on {threads} threads, {LANES} lanes",
             options.model.display()
         );
     }
-    say!("  -> [FIFO, 2 frames]");
+    say!("  -> [FIFO, {DETECTED_QUEUE_LEN} frames]");
     say!("perceive recall, locate, identify (left to right), one step for the whole rig");
     say!("  -> [FIFO per sink, full: realtime drops and counts, lossless waits]");
     let messages = Messages::new(Arc::clone(&session.rig), surface).map_err(anyhow::Error::from)?;

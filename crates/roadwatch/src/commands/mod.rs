@@ -5,5 +5,6 @@ pub mod evaluate;
 pub mod graph;
 pub mod models;
 mod output;
+mod progress;
 pub mod run;
 pub mod table;

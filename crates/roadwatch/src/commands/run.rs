@@ -8,9 +8,9 @@ use crate::{
     session::{Session, start_stamp, watch},
     status::{self, StatusLine},
 };
-use anyhow::Context as _;
+use anyhow::{Context as _, anyhow};
 use roadwatch_camera::{Pace as PlaybackPace, PlaybackOptions, Repeat, Speed};
-use roadwatch_pipeline::{NamedSink, Overload, PipelineOptions};
+use roadwatch_pipeline::{Metrics, NamedSink, Overload, PipelineOptions};
 use roadwatch_ros::{BagSink, LogTime, RosSink};
 use signal_hook::{
     consts::{SIGINT, SIGTERM},
@@ -24,6 +24,8 @@ use std::{
     time::{Duration, Instant},
 };
 
+/// The recording's name among the sinks.
+const BAG: &str = "bag";
 /// One status line per second.
 const STATUS_PERIOD: Duration = Duration::from_secs(1);
 
@@ -60,7 +62,23 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
             status::to_json(&rig, running.metrics(), took, decodes.get())
         );
     }
-    Ok(())
+    recording_is_whole(running.metrics())
+}
+
+/// A run whose recording lost something is no success, whoever watched it.
+fn recording_is_whole(metrics: &Metrics) -> Result<(), Failure> {
+    let Some(at) = metrics.sink_names().position(|name| name == BAG) else {
+        return Ok(());
+    };
+    let counts = metrics.sink(at);
+    let lost = counts.failed + counts.dropped;
+    if lost == 0 {
+        return Ok(());
+    }
+    Err(
+        anyhow!("the bag is not complete: {lost} outputs were not recorded; the log says why")
+            .into(),
+    )
 }
 
 /// What a pace means to the pipeline.
@@ -113,7 +131,7 @@ fn sinks(args: &RunArgs, session: &Session) -> Result<Vec<NamedSink>, Failure> {
         );
         let sink = bag.context("nothing can be recorded")?;
         sinks.push(NamedSink {
-            name: "bag".to_owned(),
+            name: BAG.to_owned(),
             sink: Box::new(sink),
         });
     }

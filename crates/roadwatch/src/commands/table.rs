@@ -1,12 +1,11 @@
 //! `roadwatch table`.
 
-use super::output::say;
+use super::{output::say, progress::Progress};
 use crate::{
     cli::{TableBuildArgs, TableInspectArgs, TableQueryArgs},
     failure::Failure,
 };
 use anyhow::{Context as _, anyhow};
-use indicatif::{ProgressBar, ProgressStyle};
 use roadwatch_camera::read_rig_file;
 use roadwatch_core::{BoxPx, ObjectClass, RigCamera};
 use roadwatch_locate::{
@@ -16,8 +15,8 @@ use roadwatch_locate::{
 };
 use std::{path::Path, sync::Arc};
 
-/// Steps of the progress bar: the builder tells a share, not a count.
-const BAR_STEPS: u64 = 1000;
+/// The builder tells a share, not a count.
+const PROGRESS_STEPS: u64 = 1000;
 
 /// Builds a table from a camera's calibration, or from a CSV.
 ///
@@ -88,13 +87,11 @@ fn project(
         headings: args.headings.unwrap_or(defaults.headings),
         ..defaults
     };
-    let style = ProgressStyle::with_template("{bar:40} {percent} %");
-    let bar = ProgressBar::new(BAR_STEPS)
-        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let mut progress = Progress::new(PROGRESS_STEPS, "per mille");
     let table = build_table(camera, args.ground_z_m, &grid, (group, hull), |share| {
-        bar.set_position((f64::from(share) * BAR_STEPS as f64) as u64);
+        progress.set((f64::from(share) * PROGRESS_STEPS as f64) as u64);
     })?;
-    bar.finish_and_clear();
+    progress.finish();
     Ok(table)
 }
 

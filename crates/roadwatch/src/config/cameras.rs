@@ -5,7 +5,7 @@ use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use roadwatch_camera::{FrameRate, RigDataset};
 use roadwatch_core::{
     CameraModel, CameraName, Distortion, ImageSize, Intrinsics, MeasuredFocal, Method, Rig,
-    RigCamera, Timestamp, space::Transform,
+    RigCamera, Timestamp, error_chain, space::Transform,
 };
 use std::{path::PathBuf, sync::Arc};
 
@@ -16,8 +16,6 @@ const LARGEST_SIDE_PX: u32 = 16_384;
 const LONGEST_FOCAL_PX: f64 = 1e6;
 /// Beyond this a mount is a slip of units, metres.
 const FARTHEST_M: f64 = 1e4;
-/// Stamp of a recording's first frame when none is given: a year that nobody takes for real.
-const DEFAULT_START: Timestamp = Timestamp::from_nanos(0);
 
 /// Key of cameras that no table of their own configures.
 const DATASET_KEY: &str = "rig.dataset";
@@ -33,15 +31,15 @@ pub enum SourceConfig {
         folder: PathBuf,
         /// Frames per second.
         rate: FrameRate,
-        /// Stamp of the first.
-        start: Timestamp,
+        /// Stamp of the first; `None` for the rig's own beginning.
+        start: Option<Timestamp>,
     },
     /// A video file.
     Video {
         /// The file.
         file: PathBuf,
-        /// Stamp of the first frame.
-        start: Timestamp,
+        /// Stamp of the first frame; `None` for the rig's own beginning.
+        start: Option<Timestamp>,
     },
 }
 
@@ -96,7 +94,7 @@ pub(super) fn read_head(rig: &Reader<'_, '_>, dataset_override: Option<PathBuf>)
         None => DatasetState::Absent,
         Some(Ok(dataset)) => DatasetState::Open(Arc::new(dataset)),
         Some(Err(error)) => {
-            rig.note("dataset", error.to_string());
+            rig.note("dataset", error_chain(&error));
             DatasetState::Broken
         }
     };
@@ -302,9 +300,9 @@ fn measured_focal(table: &Reader<'_, '_>, camera_height_px: u32) -> Option<Measu
 
 fn read_source(table: &Reader<'_, '_>) -> Option<SourceConfig> {
     let start = match table.text("start_stamp") {
-        None => DEFAULT_START,
+        None => None,
         Some(text) => match text.parse() {
-            Ok(start) => start,
+            Ok(start) => Some(start),
             Err(error) => {
                 table.note("start_stamp", format!("{error}"));
                 return None;

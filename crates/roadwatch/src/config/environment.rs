@@ -44,10 +44,11 @@ impl Environment {
             .filter(|value| !value.is_empty())
     }
 
-    /// The checkout that the running program was built in, `…/target/<profile>/roadwatch`; `None` in tests.
+    /// The checkout that the running program was built in; `None` when it was installed elsewhere.
     #[must_use]
     pub fn checkout(&self) -> Option<PathBuf> {
-        let folder = self.program.as_ref()?.ancestors().nth(3)?;
+        let mut above = self.program.as_ref()?.ancestors();
+        let folder = above.find(|folder| folder.join("Cargo.lock").is_file())?;
         Some(folder.to_owned())
     }
 

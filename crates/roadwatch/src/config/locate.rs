@@ -221,6 +221,12 @@ fn table_options(table: &Reader<'_, '_>) -> TableOptions {
 /// `weight = 20.0` with `weight_at_image_width_px`, or `weight = "box_width"`.
 fn weight(table: &Reader<'_, '_>) -> Option<Weight> {
     let at_width = table.integer("weight_at_image_width_px", 1..=16_384);
+    if at_width.is_some() && (table.is_text("weight") || !table.has("weight")) {
+        table.note(
+            "weight_at_image_width_px",
+            "needs a weight in pixels per metre",
+        );
+    }
     if table.is_text("weight") {
         return table.choice("weight", &[("box_width", Weight::BoxWidth)]);
     }

@@ -1,7 +1,10 @@
 //! The daemon as a process, the shared data, and the Python peers.
+//!
+//! What is skipped is written to standard error itself: the test runner keeps what `eprintln!` prints.
 
 #![expect(dead_code, reason = "each test file uses its part")]
 
+use std::io::Write as _;
 use std::{
     path::{Path, PathBuf},
     process::{Command, Output, Stdio},
@@ -26,10 +29,12 @@ pub(crate) fn shared() -> Option<PathBuf> {
     ];
     for part in wanted {
         if !named.join(part).is_file() {
-            eprintln!(
+            writeln!(
+                std::io::stderr(),
                 "SKIPPED: {} is not there; set ROADWATCH_SHARED",
                 named.join(part).display()
-            );
+            )
+            .expect("standard error");
             return None;
         }
     }
@@ -43,10 +48,12 @@ pub(crate) fn python() -> Option<PathBuf> {
     if python.is_file() {
         return Some(python);
     }
-    eprintln!(
+    writeln!(
+        std::io::stderr(),
         "SKIPPED: {} is not there; ./dev test sets it up",
         python.display()
-    );
+    )
+    .expect("standard error");
     None
 }
 
@@ -57,10 +64,12 @@ pub(crate) fn runtime_library() -> Option<PathBuf> {
     if library.is_file() {
         return Some(library);
     }
-    eprintln!(
+    writeln!(
+        std::io::stderr(),
         "SKIPPED: {} is not there; ./dev test fetches it",
         library.display()
-    );
+    )
+    .expect("standard error");
     None
 }
 

@@ -11,9 +11,9 @@ use roadwatch_core::{
 use std::{sync::Arc, time::Instant};
 
 /// 0.1 s, between two frames of a camera.
-const INTERVAL_NS: i64 = 100_000_000;
+pub(crate) const INTERVAL_NS: i64 = 100_000_000;
 /// 1557539956.439383 s, a stamp that `f64` seconds cannot hold.
-const START_NS: i64 = 1_557_539_956_439_383_000;
+pub(crate) const START_NS: i64 = 1_557_539_956_439_383_000;
 
 /// `front` looks forward through a plumb-bob lens, `rear` backward through none; both 1.5 m up.
 pub(crate) fn two_cameras() -> Rig {

@@ -1,5 +1,6 @@
 //! The Python peers of `tests/peers`, run as other processes.
 
+use std::io::Write as _;
 use std::{
     path::{Path, PathBuf},
     process::Command,
@@ -22,10 +23,12 @@ pub(crate) fn peer(script: &str, package: &str) -> Option<Command> {
         .output()
         .is_ok_and(|output| output.status.success());
     if !importable {
-        eprintln!(
+        writeln!(
+            std::io::stderr(),
             "SKIPPED: {} cannot import {package}; set {PYTHON_VARIABLE} to one that can",
             python.display()
-        );
+        )
+        .expect("standard error");
         return None;
     }
     let mut command = Command::new(python);
