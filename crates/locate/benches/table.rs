@@ -6,7 +6,7 @@
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion};
 use roadwatch_core::{
     BoxPx, CameraModel, CameraName, Distortion, ImageSize, Intrinsics, ObjectClass, RigCamera,
-    SizeLwh, space::Transform,
+    SizeLwh, camera_model::Pixel, space::Transform,
 };
 use roadwatch_locate::{
     BoxNoise, ClassSizes, GridSpec, HullSpec, LocationTable, SizeGroup, TableIndex, TableLocator,
@@ -92,14 +92,10 @@ fn report_locator(queries: &[TableQuery]) {
 }
 
 fn box_of(query: &TableQuery) -> Option<BoxPx> {
-    let height_px = 1.5 * 465.0 / query.distance_m;
-    let (x, y) = (query.center_x_px, query.center_y_px);
-    BoxPx::new(
-        x - height_px,
-        y - height_px / 2.0,
-        x + height_px,
-        y + height_px / 2.0,
-    )
+    let height_px = 1.5 * 465.0 / f64::from(query.distance_m);
+    let middle = Pixel::new(query.center_x_px.into(), query.center_y_px.into());
+    let half = Pixel::new(height_px, height_px / 2.0);
+    BoxPx::between(middle - half, middle + half)
 }
 
 #[derive(Clone, Copy)]

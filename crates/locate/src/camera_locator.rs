@@ -71,7 +71,7 @@ pub enum LocatorError {
         "camera `{0}` has no table, which method `table` needs: build one (`roadwatch table build`)"
     )]
     NoTable(CameraName),
-    /// The table is not this camera's as it is mounted now.
+    /// The table is not this camera's as it is mounted now, or of objects of another size.
     #[error(transparent)]
     Table(#[from] TableMismatch),
     /// A range that is no positive number of metres.
@@ -226,6 +226,8 @@ fn strategy(
                 .table
                 .clone()
                 .ok_or_else(|| LocatorError::NoTable(name()))?;
+            let sized = table.check_sizes(&options.sizes);
+            sized.map_err(TableMismatch::from)?;
             let table = TableLocator::new(camera, ground_z_m, table, options.table_options)?;
             Ok(Strategy::Table(Box::new(table)))
         }

@@ -33,6 +33,10 @@ impl Default for MountNoise {
     }
 }
 
+/// Step of the numeric slopes, standard deviations: so small that a place within the greatest range stays
+/// on the plane, whose far end is a fraction of a degree below the horizon.
+const SLOPE_STEP_STD_DEVS: f64 = 0.01;
+
 /// The ground plane under one camera, and how far it can be trusted.
 #[derive(Clone, Debug)]
 pub struct GroundPlane {
@@ -58,11 +62,11 @@ impl GroundPlane {
     /// half the object's length on the ground, averaged over headings (see
     /// [`HullSpec::mean_contact_extent_m`]); the centre is half the object's height above the ground.
     ///
-    /// The covariance follows numerically from the noise of the bottom edge and of the column, the
-    /// camera's pitch, the ground's height, and the unknown heading, which moves both the outline and the
-    /// middle of the box. Where one of them lifts the ray
-    /// above the horizon, the object may be as far as `max_range_m`. `None` above the horizon, beyond
-    /// `max_range_m`, or where the lens model has no ray.
+    /// The covariance follows from the noise of the bottom edge and of the column, the camera's pitch, the
+    /// ground's height, and the unknown heading, which moves both the outline and the middle of the box.
+    /// Each counts by its slope at the place, so that uncertainty grows with the square of the distance and
+    /// does not know where the plane is cut off; none counts for more than `max_range_m`, because nothing is
+    /// placed beyond. `None` above the horizon, beyond `max_range_m`, or where the lens model has no ray.
     #[must_use]
     pub fn locate(
         &self,
@@ -72,22 +76,24 @@ impl GroundPlane {
         (box_px, noise): (&BoxPx, &BoxNoise),
     ) -> Option<Estimate> {
         let inputs = Inputs {
-            contact: Pixel::new(box_px.center().x, f64::from(box_px.y_max)),
+            contact: box_px.bottom_center(),
             pitch_rad: 0.0,
             ground_z_m: self.z_m,
             extent_m: hull.mean_contact_extent_m(class.size),
         };
-        let place = self.place(camera, &inputs)?;
-        let deviations =
-            self.deviations(inputs, noise, box_px, hull.contact_extent_std_m(class.size));
-        let flat = deviations.map(|pair| self.shift(camera, place, pair));
+        let place = place(camera, &inputs).filter(|place| self.reaches(camera, *place))?;
+        let moved = self.moved(inputs, noise, box_px, hull.contact_extent_std_m(class.size));
+        let flat: Option<Vec<_>> = moved
+            .iter()
+            .map(|pair| self.shift(camera, place, pair))
+            .collect();
         let upright = Vector3::z()
             * self
                 .mount_noise
                 .ground_m
                 .hypot(class.std_dev.height_m / 2.0);
         let aside = aside_of_middle(camera, place, class);
-        let shifts = flat.into_iter().chain([aside]);
+        let shifts = flat?.into_iter().chain([aside]);
         let shifts = shifts.map(|by| Vector3::new(by.x, by.y, 0.0));
         Some(Estimate {
             position: Point::new(place.x, place.y, self.z_m + class.size.height_m / 2.0),
@@ -95,8 +101,8 @@ impl GroundPlane {
         })
     }
 
-    /// The inputs with each cause one standard deviation down and up.
-    fn deviations(
+    /// The inputs with each cause a step of the slope down and up.
+    fn moved(
         &self,
         at: Inputs,
         noise: &BoxNoise,
@@ -107,53 +113,66 @@ impl GroundPlane {
         let column = Vector2::x() * noise.center_std_px(box_px);
         let mount = self.mount_noise;
         let causes: [&dyn Fn(f64) -> Inputs; 5] = [
-            &|sign| Inputs {
-                contact: at.contact + row * sign,
+            &|std_devs| Inputs {
+                contact: at.contact + row * std_devs,
                 ..at
             },
-            &|sign| Inputs {
-                contact: at.contact + column * sign,
+            &|std_devs| Inputs {
+                contact: at.contact + column * std_devs,
                 ..at
             },
-            &|sign| Inputs {
-                pitch_rad: mount.pitch_rad * sign,
+            &|std_devs| Inputs {
+                pitch_rad: mount.pitch_rad * std_devs,
                 ..at
             },
-            &|sign| Inputs {
-                ground_z_m: at.ground_z_m + mount.ground_m * sign,
+            &|std_devs| Inputs {
+                ground_z_m: at.ground_z_m + mount.ground_m * std_devs,
                 ..at
             },
-            &|sign| Inputs {
-                extent_m: at.extent_m + extent_std_m * sign,
+            &|std_devs| Inputs {
+                extent_m: at.extent_m + extent_std_m * std_devs,
                 ..at
             },
         ];
-        causes.map(|cause| [cause(-1.0), cause(1.0)])
+        causes.map(|cause| [cause(-SLOPE_STEP_STD_DEVS), cause(SLOPE_STEP_STD_DEVS)])
     }
 
-    fn shift(&self, camera: &RigCamera, at: Vector2<f64>, [down, up]: [Inputs; 2]) -> Vector2<f64> {
-        let foot = camera.base_from_optical.origin().coords.xy().coords;
-        match (self.place(camera, &down), self.place(camera, &up)) {
+    /// What one standard deviation of a cause does to the place `at`, metres; from one side where the lens
+    /// model or the plane ends on the other, `None` where it ends on both.
+    fn shift(
+        &self,
+        camera: &RigCamera,
+        at: Vector2<f64>,
+        [down, up]: &[Inputs; 2],
+    ) -> Option<Vector2<f64>> {
+        let step = match (place(camera, down), place(camera, up)) {
             (Some(down), Some(up)) => (up - down) / 2.0,
-            _ => {
-                let away = at - foot;
-                away.normalize() * (self.max_range_m - away.norm())
-            }
-        }
+            (Some(down), None) => at - down,
+            (None, Some(up)) => up - at,
+            (None, None) => return None,
+        };
+        Some((step / SLOPE_STEP_STD_DEVS).cap_magnitude(self.max_range_m))
     }
 
-    /// The object's middle on the ground, in base_link.
-    fn place(&self, camera: &RigCamera, inputs: &Inputs) -> Option<Vector2<f64>> {
-        let ray = camera
-            .base_from_optical
-            .rotate(camera.model.ray(inputs.contact)?);
-        let eye = camera.base_from_optical.origin();
-        let level = ray.xy();
-        let direction = level.try_normalize(f64::EPSILON)?;
-        let elevation_rad = ray.z.atan2(level.norm()) + inputs.pitch_rad;
-        let to_contact_m = (inputs.ground_z_m - eye.z()) / elevation_rad.tan();
-        let range_m = to_contact_m + inputs.extent_m;
-        let meets_ground = elevation_rad < 0.0 && to_contact_m > 0.0 && range_m <= self.max_range_m;
-        meets_ground.then(|| eye.coords.xy().coords + direction * range_m)
+    fn reaches(&self, camera: &RigCamera, place: Vector2<f64>) -> bool {
+        (place - foot(camera)).norm() <= self.max_range_m
     }
+}
+
+fn foot(camera: &RigCamera) -> Vector2<f64> {
+    camera.base_from_optical.origin().coords.xy().coords
+}
+
+/// The object's middle on the ground, in base_link, however far; `None` above the horizon or without a ray.
+fn place(camera: &RigCamera, inputs: &Inputs) -> Option<Vector2<f64>> {
+    let ray = camera
+        .base_from_optical
+        .rotate(camera.model.ray(inputs.contact)?);
+    let level = ray.xy();
+    let direction = level.try_normalize(f64::EPSILON)?;
+    let elevation_rad = ray.z.atan2(level.norm()) + inputs.pitch_rad;
+    let below_eye_m = inputs.ground_z_m - camera.base_from_optical.origin().z();
+    let to_contact_m = below_eye_m / elevation_rad.tan();
+    let meets_ground = elevation_rad < 0.0 && to_contact_m > 0.0;
+    meets_ground.then(|| foot(camera) + direction * (to_contact_m + inputs.extent_m))
 }

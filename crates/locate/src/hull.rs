@@ -3,6 +3,7 @@
 use nalgebra::{Point3, Vector3};
 use roadwatch_core::{
     BoxPx, CameraModel, Distortion, ObjectClass, SizeLwh,
+    camera_model::Pixel,
     space::{CameraGround, Optical, Point, Transform},
 };
 
@@ -12,15 +13,15 @@ const FOLD_TOLERANCE: f64 = 1e-6;
 
 /// One horizontal slice of a hull: an upright octagon, given as shares of the object's size.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HullLayer {
+struct HullLayer {
     /// Height above the ground as a share of the object's height.
-    pub height_share: f64,
+    height_share: f64,
     /// Length of the slice as a share of the object's length.
-    pub length_share: f64,
+    length_share: f64,
     /// Width of the slice as a share of the object's width.
-    pub width_share: f64,
+    width_share: f64,
     /// How much of each corner is cut off, as a share of the slice's width; 0 is a rectangle.
-    pub corner_share: f64,
+    corner_share: f64,
 }
 
 const fn layer(height: f64, length: f64, width: f64, corner: f64) -> HullLayer {
@@ -71,18 +72,13 @@ const CUBOID: &[HullLayer] = &[layer(0.0, 1.0, 1.0, 0.0), layer(1.0, 1.0, 1.0, 0
 ///
 /// Front and back are alike: nobody knows which end of a car is the nearer one before its heading
 /// is known, so headings half a turn apart cast the same silhouette.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HullSpec {
-    layers: Vec<HullLayer>,
+    /// Lowest first, at least one.
+    layers: &'static [HullLayer],
 }
 
 impl HullSpec {
-    /// A hull from its slices, lowest first; `None` when there is none.
-    #[must_use]
-    pub fn new(layers: Vec<HullLayer>) -> Option<Self> {
-        (!layers.is_empty()).then_some(Self { layers })
-    }
-
     /// The hull of a class; the cuboid for a class nobody described.
     #[must_use]
     pub fn for_class(class: &ObjectClass) -> Self {
@@ -93,17 +89,7 @@ impl HullSpec {
             "person" => UPRIGHT,
             _ => CUBOID,
         };
-        Self {
-            layers: layers.to_vec(),
-        }
-    }
-
-    /// The whole cuboid, without taper.
-    #[must_use]
-    pub fn cuboid() -> Self {
-        Self {
-            layers: CUBOID.to_vec(),
-        }
+        Self { layers }
     }
 
     /// Distance from the centre to where the nearest point touches the ground, as a mean over all
@@ -195,23 +181,19 @@ impl SilhouetteCamera {
     #[must_use]
     pub fn silhouette_px(&self, hull_points: &[Vector3<f64>], pose: GroundPose) -> Option<BoxPx> {
         let (sin, cos) = pose.heading_rad.sin_cos();
-        let mut edges = [f64::MAX, f64::MAX, f64::MIN, f64::MIN];
+        let (mut min, mut max) = (Pixel::repeat(f64::MAX), Pixel::repeat(f64::MIN));
         for point in hull_points {
             let pixel = self.pixel(Point::from_coords(Point3::new(
                 pose.loc_y_m + cos * point.x - sin * point.y,
                 -pose.loc_x_m + sin * point.x + cos * point.y,
                 point.z,
             )))?;
-            edges[0] = edges[0].min(pixel.x);
-            edges[1] = edges[1].min(pixel.y);
-            edges[2] = edges[2].max(pixel.x);
-            edges[3] = edges[3].max(pixel.y);
+            (min, max) = (min.inf(&pixel), max.sup(&pixel));
         }
-        let [x_min, y_min, x_max, y_max] = edges.map(|edge| edge as f32);
-        BoxPx::new(x_min, y_min, x_max, y_max)
+        BoxPx::between(min, max)
     }
 
-    fn pixel(&self, point: Point<CameraGround>) -> Option<nalgebra::Vector2<f64>> {
+    fn pixel(&self, point: Point<CameraGround>) -> Option<Pixel> {
         let seen = self.optical_from_ground * point;
         let pixel = self.model.project(seen)?;
         if self.model.distortion == Distortion::None {
@@ -227,10 +209,10 @@ impl SilhouetteCamera {
     pub fn clip(&self, whole: BoxPx) -> Option<(BoxPx, f32)> {
         let size = self.model.size;
         let clipped = BoxPx::new(
-            whole.x_min.max(-0.5),
-            whole.y_min.max(-0.5),
-            whole.x_max.min(size.width_px as f32 - 0.5),
-            whole.y_max.min(size.height_px as f32 - 0.5),
+            whole.x_min.max(0.0),
+            whole.y_min.max(0.0),
+            whole.x_max.min(size.width_px as f32),
+            whole.y_max.min(size.height_px as f32),
         )?;
         Some((clipped, clipped.area_px2() / whole.area_px2()))
     }

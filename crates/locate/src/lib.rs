@@ -20,7 +20,7 @@ pub use camera_locator::{CameraLocator, LocatorError, LocatorOptions};
 pub use estimate::Estimate;
 pub use ground::{GroundPlane, MountNoise};
 pub use hold::HoldOptions;
-pub use hull::{GroundPose, HullLayer, HullSpec, SilhouetteCamera};
+pub use hull::{GroundPose, HullSpec, SilhouetteCamera};
 pub use sizes::{CarCategory, ClassSize, ClassSizes, SizeStatistic, Standing};
 pub use table::{
     CalibrationHash, ExpectedDistance, GridSpec, LocationTable, SizeGroup, TableIndex, TableQuery,

@@ -19,7 +19,11 @@ pub use file::{TableFileError, TableFormatError};
 pub use index::{Neighbour, Split, TableIndex};
 pub use query::{DEFAULT_PX_PER_METRE, DEFAULT_WEIGHT_WIDTH_PX, TableQuery, Weight};
 
+use crate::sizes::ClassSizes;
 use roadwatch_core::{BoxPx, CameraName, ImageSize, ObjectClass, RigCamera, SizeLwh};
+
+/// Sizes that differ by less are the same, metres: nobody knows the size of a class better.
+const SAME_SIZE_M: f64 = 0.01;
 
 /// The columns of the paper's table, in its order.
 pub const COLUMNS: [&str; 7] = [
@@ -27,13 +31,17 @@ pub const COLUMNS: [&str; 7] = [
 ];
 
 /// One row: a box and where the object stood.
+///
+/// The box's middle is a pixel position, whose zero is the centre of the first pixel ([`BoxPx::center`]).
+/// A box measured by its edges, as detectors give them, has its middle half a pixel to the left of and
+/// above the mean of its edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableRow {
     /// `Area`: of the box, square pixels. Stored, not scored.
     pub area_px2: f32,
-    /// `Center_x`: column of the box's middle, pixels.
+    /// `Center_x`: column of the box's middle, a pixel position.
     pub center_x_px: f32,
-    /// `Center_y`: row of the box's middle, pixels.
+    /// `Center_y`: row of the box's middle, a pixel position.
     pub center_y_px: f32,
     /// `Distance`: component along the optical axis to the object's centre (`depth_m`), metres.
     pub distance_m: f32,
@@ -81,6 +89,30 @@ pub struct Grid {
     pub columns: u32,
 }
 
+impl Grid {
+    /// As many as a [`GridSpec`] may have rows.
+    const MAX_COLUMNS: u32 = 10_000_000;
+    /// A cell so large says nothing about an object on a road, metres.
+    const MAX_STEP_M: f32 = 1_000.0;
+
+    fn check(&self) -> Result<(), InvalidTable> {
+        if !(self.step_m > 0.0 && self.step_m <= Self::MAX_STEP_M) {
+            return Err(InvalidTable::Grid(
+                "its step must be more than 0 and at most 1000 m",
+            ));
+        }
+        if !(1..=Self::MAX_COLUMNS).contains(&self.columns) {
+            return Err(InvalidTable::Grid(
+                "1 to 10000000 columns a step apart are possible",
+            ));
+        }
+        if !(self.origin_loc_x_m.is_finite() && self.origin_loc_y_m.is_finite()) {
+            return Err(InvalidTable::Grid("its origin must be finite"));
+        }
+        Ok(())
+    }
+}
+
 /// What a table is of.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableHeader {
@@ -120,6 +152,9 @@ pub enum InvalidTable {
     /// A header that no table can have.
     #[error("the header's {0} is impossible")]
     Header(&'static str),
+    /// Places on no grid that a table can have.
+    #[error("the grid of places is impossible: {0}")]
+    Grid(&'static str),
 }
 
 /// The table was made for another camera, or its calibration changed since.
@@ -137,6 +172,33 @@ pub struct OtherCamera {
     pub used_for: CameraName,
     /// Its calibration.
     pub used_for_hash: CalibrationHash,
+}
+
+/// The table was made for objects of another size than is configured.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "the table was made for objects of {}, but class `{class}` is configured as {}: rebuild the table for \
+     that size, or leave `table` out and it is built at start",
+    lwh(made_for),
+    lwh(configured)
+)]
+pub struct OtherSize {
+    /// Whose size differs.
+    pub class: ObjectClass,
+    /// The table's.
+    pub made_for: SizeLwh,
+    /// The configuration's.
+    pub configured: SizeLwh,
+}
+
+/// As people write sizes.
+fn lwh(size: &SizeLwh) -> String {
+    let [length_m, width_m, height_m] = dimensions_m(*size);
+    format!("{length_m:.2} x {width_m:.2} x {height_m:.2} m")
+}
+
+fn dimensions_m(size: SizeLwh) -> [f64; 3] {
+    [size.length_m, size.width_m, size.height_m]
 }
 
 /// A look-up table: at least one row, every number finite.
@@ -159,14 +221,7 @@ impl LocationTable {
         if rows.len() >= u32::MAX as usize {
             return Err(InvalidTable::TooManyRows(rows.len()));
         }
-        for (at, row) in rows.iter().enumerate() {
-            if let Some(column) = row.numbers().iter().position(|number| !number.is_finite()) {
-                return Err(InvalidTable::NotFinite {
-                    row: at + 1,
-                    column: COLUMNS[column],
-                });
-            }
-        }
+        check_finite(&rows)?;
         Ok(Self { header, rows })
     }
 
@@ -204,6 +259,41 @@ impl LocationTable {
             used_for_hash,
         })
     }
+
+    /// Checks that the table's classes are configured as large as its objects, to a centimetre in each
+    /// dimension. Classes without a configured size are never located, so they do not count.
+    ///
+    /// # Errors
+    /// Names the first class that differs.
+    pub fn check_sizes(&self, sizes: &ClassSizes) -> Result<(), OtherSize> {
+        let made_for = self.header.group.size;
+        for class in &self.header.group.classes {
+            let configured = sizes.get(class).map_or(made_for, |known| known.size);
+            let mut pairs = dimensions_m(made_for)
+                .into_iter()
+                .zip(dimensions_m(configured));
+            if pairs.any(|(made_m, configured_m)| (made_m - configured_m).abs() > SAME_SIZE_M) {
+                return Err(OtherSize {
+                    class: class.clone(),
+                    made_for,
+                    configured,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn check_finite(rows: &[TableRow]) -> Result<(), InvalidTable> {
+    for (at, row) in rows.iter().enumerate() {
+        if let Some(column) = row.numbers().iter().position(|number| !number.is_finite()) {
+            return Err(InvalidTable::NotFinite {
+                row: at + 1,
+                column: COLUMNS[column],
+            });
+        }
+    }
+    Ok(())
 }
 
 fn check_header(header: &TableHeader) -> Result<(), InvalidTable> {
@@ -213,7 +303,6 @@ fn check_header(header: &TableHeader) -> Result<(), InvalidTable> {
         ("width", size.width_m),
         ("height", size.height_m),
         ("effective height", header.expected.height_m),
-        ("grid step", f64::from(header.grid.step_m)),
         ("image width", f64::from(header.image_size.width_px)),
         ("image height", f64::from(header.image_size.height_px)),
     ];
@@ -228,6 +317,7 @@ fn check_header(header: &TableHeader) -> Result<(), InvalidTable> {
     {
         return Err(InvalidTable::Header("expected distance"));
     }
+    header.grid.check()?;
     wrong.map_or(Ok(()), |(name, _)| Err(InvalidTable::Header(name)))
 }
 

@@ -2,14 +2,14 @@
 
 use crate::{
     box_noise::BoxNoise,
-    estimate::{Estimate, covariance_of_shifts},
+    estimate::Estimate,
     sizes::ClassSize,
     table::{
-        ExpectedDistance, LocationTable, Neighbour, OtherCamera, Split, TableIndex, TableQuery,
-        TableRow, Weight,
+        ExpectedDistance, LocationTable, Neighbour, OtherCamera, OtherSize, Split, TableIndex,
+        TableQuery, Weight,
     },
 };
-use nalgebra::{Matrix2, Vector2, Vector3};
+use nalgebra::{Matrix2, Vector2};
 use roadwatch_core::{
     BoxPx, RigCamera,
     rig::LooksVertical,
@@ -26,6 +26,9 @@ const SLOPE_STD_DEVS: f64 = 2.0;
 const MIN_HEIGHT_PX: f32 = 0.5;
 /// How high the ground under an object may lie, standard deviation, metres: a road's camber.
 const GROUND_STD_M: f64 = 0.05;
+
+/// Nearer than this no depth is told apart, metres.
+const NEAREST_M: f32 = 1.0;
 
 /// Which rows a query looks at, by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -56,12 +59,15 @@ pub struct TableOptions {
     pub weight: Weight,
     /// Where `d_` comes from.
     pub distance: QueryDistance,
-    /// A score over this is no match, pixels.
+    /// A score over this is no match, pixels of an image
+    /// [`crate::table::DEFAULT_WEIGHT_WIDTH_PX`] wide; see [`Weight::limit_scale`] for other
+    /// widths and for [`Weight::BoxWidth`].
     pub score_limit_px: f32,
 }
 
 impl Default for TableOptions {
-    /// 150 pixels: with the default weight, 22 m of depth, more than box noise makes inside the table.
+    /// 150 pixels: with the default weight and with box width, 22 m of depth, more than box noise makes
+    /// inside the table.
     fn default() -> Self {
         Self {
             split: SplitMode::default(),
@@ -81,6 +87,9 @@ pub enum TableMismatch {
     /// The camera looks straight up or down.
     #[error(transparent)]
     LooksVertical(#[from] LooksVertical),
+    /// Of objects of another size than is configured.
+    #[error(transparent)]
+    OtherSize(#[from] OtherSize),
 }
 
 /// One camera's table, indexed, with what places its answers in base_link.
@@ -140,26 +149,25 @@ impl TableLocator {
         })
     }
 
-    /// The row that looks most like a box; `None` when there is no match (METHOD.md, section 3).
-    #[must_use]
-    pub fn matching_row(&self, class: &ClassSize, box_px: &BoxPx) -> Option<(TableRow, Neighbour)> {
-        let found = self.index.nearest(&self.query(class, box_px)?)?;
-        (found.score <= self.options.score_limit_px).then(|| (*self.index.row(found), found))
-    }
-
-    /// Places a box where its row says; the centre is half the group's height above the ground.
+    /// Places a box where its row says; the centre is half the group's height above the ground. `None`
+    /// when there is no match (METHOD.md, section 3).
     ///
     /// The covariance adds up: box noise and the spread of real heights, each by asking again with the
-    /// box moved; the disagreement of the rows that match nearly as well; the cells' size.
+    /// box moved; how far the rows that match nearly as well are from the published one; what the row
+    /// leaves unexplained of the expected distance, which is large past the table's edge; the cells' size.
     #[must_use]
     pub fn locate(&self, class: &ClassSize, box_px: &BoxPx, noise: &BoxNoise) -> Option<Estimate> {
         let query = self.query(class, box_px)?;
         let rows = self.index.nearest_rows::<NEIGHBOURS>(&query);
-        let best = rows[0].filter(|best| best.score <= self.options.score_limit_px)?;
+        let best = rows[0].filter(|best| best.score <= self.score_limit_px(box_px))?;
         let place = self.place(best);
+        let unexplained = self.unexplained(best, &query);
         let header = self.table().header();
         let cell = Matrix2::identity() * f64::from(header.grid.step_m).powi(2) / 12.0;
-        let flat = self.noise(class, box_px, noise) + self.disagreement(&rows) + cell;
+        let flat = self.noise(class, (box_px, noise), place + unexplained)?
+            + self.disagreement(&rows, place)
+            + outer(unexplained)
+            + cell;
         let up_m = header.group.size.height_m / 2.0;
         let up_std_m = GROUND_STD_M.hypot(class.std_dev.height_m / 2.0);
         let mut covariance = flat.to_homogeneous();
@@ -177,15 +185,39 @@ impl TableLocator {
         Vector2::new(f64::from(row.loc_y_m), f64::from(-row.loc_x_m))
     }
 
-    fn disagreement(&self, rows: &[Option<Neighbour>]) -> Matrix2<f64> {
-        let places = || rows.iter().flatten().map(|&row| self.place(row));
-        let count = places().count() as f64;
-        let mean = places().sum::<Vector2<f64>>() / count;
-        let outer = places().map(|place| (place - mean) * (place - mean).transpose());
-        outer.sum::<Matrix2<f64>>() / count
+    fn score_limit_px(&self, box_px: &BoxPx) -> f32 {
+        let scale = self
+            .options
+            .weight
+            .limit_scale(box_px, self.camera.model.size);
+        self.options.score_limit_px * scale
     }
 
-    fn noise(&self, class: &ClassSize, box_px: &BoxPx, noise: &BoxNoise) -> Matrix2<f64> {
+    /// From a row's place along the ray to where the query's distance would be.
+    fn unexplained(&self, best: Neighbour, query: &TableQuery) -> Vector2<f64> {
+        let row_m = self.index.row(best).distance_m;
+        self.place(best) * f64::from((query.distance_m - row_m) / row_m.max(NEAREST_M))
+    }
+
+    /// Of rows about the published place, which is not their mean.
+    fn disagreement(&self, rows: &[Option<Neighbour>], published: Vector2<f64>) -> Matrix2<f64> {
+        let places = rows.iter().flatten().map(|&row| self.place(row));
+        let count = places.clone().count() as f64;
+        places
+            .map(|place| outer(place - published))
+            .sum::<Matrix2<f64>>()
+            / count
+    }
+
+    /// Of the box and of the object's real height, about `at`. Each cause counts by its greater side: on
+    /// the side where the table ends, moved boxes have no row or the edge's. `None` where the lens model has
+    /// no ray on either side.
+    fn noise(
+        &self,
+        class: &ClassSize,
+        (box_px, noise): (&BoxPx, &BoxNoise),
+        at: Vector2<f64>,
+    ) -> Option<Matrix2<f64>> {
         let edge_px = (noise.edge_std_px(box_px) * SLOPE_STD_DEVS) as f32;
         let center_px = (noise.center_std_px(box_px) * SLOPE_STD_DEVS) as f32;
         let taller = class.std_dev.height_m / class.size.height_m * SLOPE_STD_DEVS;
@@ -195,13 +227,13 @@ impl TableLocator {
             &|sign| (moved_edges(box_px, 0.0, edge_px * sign), 1.0),
             &|sign| (*box_px, 1.0 + taller * f64::from(sign)),
         ];
-        let shifts = moved.into_iter().filter_map(|moved| {
-            let (down, up) = (moved(-1.0), moved(1.0));
-            let shift = self.place_of(class, down)? - self.place_of(class, up)?;
-            let per_std_dev = shift / (2.0 * SLOPE_STD_DEVS);
-            Some(Vector3::new(per_std_dev.x, per_std_dev.y, 0.0))
-        });
-        covariance_of_shifts(shifts).fixed_view::<2, 2>(0, 0).into()
+        let of_cause = |moved: &dyn Fn(f32) -> (BoxPx, f64)| {
+            let sides = [-1.0, 1.0].map(|sign| self.place_of(class, moved(sign)));
+            let shifts = sides.into_iter().flatten().map(|place| place - at);
+            let greater = shifts.max_by(|a, b| a.norm().total_cmp(&b.norm()))?;
+            Some(outer(greater / SLOPE_STD_DEVS))
+        };
+        moved.into_iter().map(of_cause).sum()
     }
 
     /// Where the table puts a box of an object `taller` times as high as expected.
@@ -210,6 +242,10 @@ impl TableLocator {
         query.distance_m *= taller as f32;
         Some(self.place(self.index.nearest(&query)?))
     }
+}
+
+fn outer(shift: Vector2<f64>) -> Matrix2<f64> {
+    shift * shift.transpose()
 }
 
 fn moved_aside(box_px: &BoxPx, by_px: f32) -> BoxPx {

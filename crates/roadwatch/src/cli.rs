@@ -130,6 +130,12 @@ pub struct EvaluateArgs {
     pub json: bool,
 }
 
+fn size(text: &str) -> Result<f64, String> {
+    let size: Option<f64> = text.parse().ok();
+    size.filter(|size| (0.01..=100.0).contains(size))
+        .ok_or_else(|| "expected metres, 0.01 to 100".to_owned())
+}
+
 fn share(text: &str) -> Result<f64, String> {
     let share: Option<f64> = text.parse().ok();
     share
@@ -165,6 +171,15 @@ pub struct TableBuildArgs {
     /// The class whose size and shape the table is for.
     #[arg(long, default_value = "car")]
     pub class: String,
+    /// Length of the class, metres, where the configuration sets another than the built-in one.
+    #[arg(long, value_name = "M", value_parser = size)]
+    pub length_m: Option<f64>,
+    /// Width of the class, metres, likewise.
+    #[arg(long, value_name = "M", value_parser = size)]
+    pub width_m: Option<f64>,
+    /// Height of the class, metres, likewise.
+    #[arg(long, value_name = "M", value_parser = size)]
+    pub height_m: Option<f64>,
     /// Height of the ground plane in base_link, metres.
     #[arg(
         long,

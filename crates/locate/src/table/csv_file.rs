@@ -2,7 +2,7 @@
 
 use super::{
     COLUMNS, CalibrationHash, ExpectedDistance, Grid, InvalidTable, LocationTable, SizeGroup,
-    TableHeader, TableRow, file::write_atomically,
+    TableHeader, TableRow, check_finite, file::write_atomically,
 };
 use roadwatch_core::RigCamera;
 use std::{
@@ -85,7 +85,8 @@ impl LocationTable {
     /// plain eq. 2, and the grid's step is the median gap between the places that occur.
     ///
     /// # Errors
-    /// When the CSV is not one, a column is missing, or a field is not a finite number.
+    /// When the CSV is not one, a column is missing, a field is not a finite number, or the places are on
+    /// no grid that a table can have.
     pub fn read_csv(path: &Path, origin: CsvOrigin<'_>) -> Result<Self, CsvError> {
         let file = std::fs::File::open(path).map_err(|cause| CsvError::Io {
             path: path.to_owned(),
@@ -97,6 +98,7 @@ impl LocationTable {
                 .trim(csv::Trim::All)
                 .from_reader(file),
         )?;
+        check_finite(&rows)?;
         let header = TableHeader {
             camera: origin.camera.name.clone(),
             image_size: origin.camera.model.size,
@@ -159,6 +161,7 @@ fn cell_index(number: f64) -> Option<u32> {
     whole.then_some(number as u32)
 }
 
+/// The grid of finite rows; its columns saturate where the places are too far apart to count them.
 fn grid_of(rows: &[TableRow]) -> Grid {
     let sorted = |place: fn(&TableRow) -> f32| {
         let mut places: Vec<f32> = rows.iter().map(place).collect();
@@ -177,11 +180,11 @@ fn grid_of(rows: &[TableRow]) -> Grid {
         .copied()
         .unwrap_or(STEP_OF_ONE_SPOT_M);
     let origin = |places: &[f32]| places.first().copied().unwrap_or(0.0);
-    let width_m = across.last().copied().unwrap_or(0.0) - origin(&across);
+    let width_m = f64::from(across.last().copied().unwrap_or(0.0)) - f64::from(origin(&across));
     Grid {
         origin_loc_x_m: origin(&across),
         origin_loc_y_m: origin(&along),
         step_m,
-        columns: (width_m / step_m).round() as u32 + 1,
+        columns: ((width_m / f64::from(step_m)).round() as u32).saturating_add(1),
     }
 }

@@ -83,10 +83,10 @@ pub(super) fn terms(model: &CameraModel, box_px: &BoxPx) -> Option<Vector4<f64>>
 /// Width and height of a box on the plane at depth 1, between the middles of its edges.
 fn ray_size(model: &CameraModel, box_px: &BoxPx) -> Option<Vector2<f64>> {
     let center = box_px.center();
-    let column = |x: f32| model.ray(Pixel::new(x.into(), center.y));
-    let row = |y: f32| model.ray(Pixel::new(center.x, y.into()));
+    let across = Pixel::x() * f64::from(box_px.width_px()) / 2.0;
+    let down = Pixel::y() * f64::from(box_px.height_px()) / 2.0;
     Some(Vector2::new(
-        column(box_px.x_max)?.x - column(box_px.x_min)?.x,
-        row(box_px.y_max)?.y - row(box_px.y_min)?.y,
+        model.ray(center + across)?.x - model.ray(center - across)?.x,
+        model.ray(center + down)?.y - model.ray(center - down)?.y,
     ))
 }

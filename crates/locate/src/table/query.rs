@@ -51,14 +51,26 @@ impl Weight {
             Self::BoxWidth => box_px.width_px(),
         }
     }
+
+    /// By what a limit on scores, stated for an image [`DEFAULT_WEIGHT_WIDTH_PX`] wide, is multiplied for
+    /// one query: with a numeric weight by the image's width, as its scores are; with box width by
+    /// how many times [`DEFAULT_PX_PER_METRE`] that weighs, so that the limit stands for as many metres of
+    /// depth as with the default weight.
+    #[must_use]
+    pub fn limit_scale(self, box_px: &BoxPx, size: ImageSize) -> f32 {
+        match self {
+            Self::PxPerMetre { .. } => size.width_px as f32 / DEFAULT_WEIGHT_WIDTH_PX as f32,
+            Self::BoxWidth => box_px.width_px() / DEFAULT_PX_PER_METRE,
+        }
+    }
 }
 
 /// A question: which row looks most like this?
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableQuery {
-    /// Column of the box's middle, pixels.
+    /// Column of the box's middle, a pixel position.
     pub center_x_px: f32,
-    /// Row of the box's middle, pixels.
+    /// Row of the box's middle, a pixel position.
     pub center_y_px: f32,
     /// The expected distance `d_` (`depth_m`), metres.
     pub distance_m: f32,

@@ -6,7 +6,12 @@ use roadwatch_core::{
     ObjectClass, RigCamera, Score, SizeLwh,
     space::{Point, Transform},
 };
-use roadwatch_locate::{GroundPose, HullSpec, SilhouetteCamera, SizeGroup};
+use roadwatch_locate::{
+    CalibrationHash, ExpectedDistance, GroundPose, HullSpec, LocationTable, SilhouetteCamera,
+    SizeGroup, TableRow,
+    table::{Grid, TableHeader},
+};
+use std::sync::Arc;
 
 /// A car as Table 2 has it.
 pub(crate) const CAR: SizeLwh = SizeLwh {
@@ -71,6 +76,39 @@ pub(crate) fn cars() -> SizeGroup {
 /// The hull of a car.
 pub(crate) fn car_hull() -> HullSpec {
     HullSpec::for_class(&ObjectClass::new("car"))
+}
+
+/// A table of these rows, of cars in a level camera.
+pub(crate) fn table(rows: Vec<TableRow>) -> Arc<LocationTable> {
+    let camera = camera(985.0, 0.0, 0.0);
+    let header = TableHeader {
+        image_size: camera.model.size,
+        calibration: CalibrationHash::of(&camera, 0.0),
+        camera: camera.name,
+        group: cars(),
+        expected: ExpectedDistance::literal(1.5),
+        made: "for a test".to_owned(),
+        grid: Grid {
+            origin_loc_x_m: -50.0,
+            origin_loc_y_m: 1.0,
+            step_m: 1.0,
+            columns: 101,
+        },
+    };
+    Arc::new(LocationTable::new(header, rows).expect("a table"))
+}
+
+/// A row of a car at `loc_x_m` and `distance_m` ahead.
+pub(crate) fn row(center_x_px: f32, center_y_px: f32, distance_m: f32, loc_x_m: f32) -> TableRow {
+    TableRow {
+        area_px2: 1.0,
+        center_x_px,
+        center_y_px,
+        distance_m,
+        loc_x_m,
+        loc_y_m: distance_m,
+        loc: 0,
+    }
 }
 
 /// A detected object of a class.

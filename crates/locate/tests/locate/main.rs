@@ -3,5 +3,6 @@
 mod common;
 mod contract;
 mod table_accuracy;
+mod table_answers;
 mod table_files;
 mod table_index;

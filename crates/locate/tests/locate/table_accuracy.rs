@@ -1,7 +1,7 @@
 //! Tables made from a camera's calibration locate exact silhouettes that are not in them.
 
 use crate::common::{Random, SeenCar, camera, car_hull, cars, seen_cars, silhouettes};
-use roadwatch_core::{Distortion, RigCamera};
+use roadwatch_core::{Distortion, ObjectClass, RigCamera};
 use roadwatch_locate::{
     ClassSizes, GridSpec, GroundPose, HullSpec, QueryDistance, TableIndex, TableLocator,
     TableOptions, Weight, build_table, table::Split,
@@ -98,7 +98,8 @@ fn a_cars_silhouette_is_about_nine_tenths_as_high_as_its_cuboid() {
     for focal_px in [985.0, 465.0] {
         let camera = camera(focal_px, 0.5, 0.0);
         let over_ground = silhouettes(&camera);
-        let cuboid = HullSpec::cuboid().points(crate::common::CAR);
+        let cuboid = HullSpec::for_class(&ObjectClass::new("of no known outline"))
+            .points(crate::common::CAR);
         let ratio = |car: &SeenCar| {
             let whole = over_ground.silhouette_px(&cuboid, car.pose)?;
             Some(f64::from(car.box_px.height_px() / whole.height_px()))

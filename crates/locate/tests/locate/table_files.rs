@@ -184,6 +184,37 @@ fn a_csv_says_what_is_wrong_with_it() {
     let cell = read(&format!("{titles}1,2,3,4,5,6,7.5\n"));
     assert_eq!(cell, "row 1, column Loc: `7.5` is not a number");
     assert!(read(&format!("{titles}1,2,3\n")).contains("not readable as CSV"));
+    let endless = read(&format!("{titles}1,2,3,4,inf,6,7\n"));
+    assert_eq!(endless, "row 1, column LocX: not a finite number");
+}
+
+#[test]
+fn places_on_no_possible_grid_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("front.csv");
+    let camera = camera(985.0, 1.0, 0.0);
+    let import = |places: &[&str]| {
+        let rows = places.iter().map(|place| format!("1,2,3,4,{place},6,7\n"));
+        let titles = "Area,Center_x,Center_y,Distance,LocX,LocY,Loc\n".to_owned();
+        std::fs::write(&path, titles + &rows.collect::<String>()).expect("written");
+        let refused = LocationTable::read_csv(&path, origin(&camera));
+        refused.expect_err("no grid").to_string()
+    };
+    let columns =
+        "the grid of places is impossible: 1 to 10000000 columns a step apart are possible";
+    assert_eq!(import(&["0", "1", "2", "1e30"]), columns);
+    assert_eq!(import(&["-3e38", "0", "1", "2", "3", "3e38"]), columns);
+    let step = "the grid of places is impossible: its step must be more than 0 and at most 1000 m";
+    assert_eq!(import(&["0", "1e30"]), step);
+    assert_eq!(import(&["-3e38", "3e38"]), step);
+
+    let table = small_table();
+    let columns_at = |bytes: &[u8]| bytes.len() - table.rows().len() * 28 - 4;
+    let none = forged(table.to_bytes(), |content| {
+        let at = columns_at(content);
+        content[at..at + 4].fill(0);
+    });
+    assert_eq!(why(&none), columns);
 }
 
 #[test]

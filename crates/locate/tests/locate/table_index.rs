@@ -1,46 +1,11 @@
 //! The index finds the row that a scan finds, always.
 
-use crate::common::{Random, camera, cars};
+use crate::common::{Random, row, table};
 use proptest::prelude::*;
-use roadwatch_locate::{
-    CalibrationHash, ExpectedDistance, LocationTable, TableIndex, TableQuery, TableRow,
-    table::{Grid, Split, TableHeader},
-};
-use std::sync::Arc;
+use roadwatch_locate::{TableIndex, TableQuery, TableRow, table::Split};
 
 const COLUMN_PX: f32 = 485.0;
 const WIDTH_PX: f32 = 960.0;
-
-fn table(rows: Vec<TableRow>) -> Arc<LocationTable> {
-    let camera = camera(985.0, 0.0, 0.0);
-    let header = TableHeader {
-        image_size: camera.model.size,
-        calibration: CalibrationHash::of(&camera, 0.0),
-        camera: camera.name,
-        group: cars(),
-        expected: ExpectedDistance::literal(1.5),
-        made: "for a test".to_owned(),
-        grid: Grid {
-            origin_loc_x_m: -50.0,
-            origin_loc_y_m: 1.0,
-            step_m: 1.0,
-            columns: 101,
-        },
-    };
-    Arc::new(LocationTable::new(header, rows).expect("a table"))
-}
-
-fn row(center_x_px: f32, center_y_px: f32, distance_m: f32, loc_x_m: f32) -> TableRow {
-    TableRow {
-        area_px2: 1.0,
-        center_x_px,
-        center_y_px,
-        distance_m,
-        loc_x_m,
-        loc_y_m: distance_m,
-        loc: 0,
-    }
-}
 
 fn splits() -> [Split; 2] {
     [

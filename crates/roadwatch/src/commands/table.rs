@@ -7,7 +7,7 @@ use crate::{
 };
 use anyhow::{Context as _, anyhow};
 use roadwatch_camera::read_rig_file;
-use roadwatch_core::{BoxPx, ObjectClass, RigCamera};
+use roadwatch_core::{BoxPx, ObjectClass, RigCamera, SizeLwh};
 use roadwatch_locate::{
     ClassSizes, GridSpec, HullSpec, LocationTable, SizeGroup, TableIndex, TableQuery, Weight,
     build_table,
@@ -26,10 +26,15 @@ pub fn build(args: &TableBuildArgs) -> Result<(), Failure> {
     let camera = find_camera(&args.rig, &args.camera)?;
     let class = ObjectClass::new(&args.class);
     let sizes = ClassSizes::default();
-    let size = sizes
+    let known = sizes
         .get(&class)
         .with_context(|| format!("no size is known for class `{class}`"))?
         .size;
+    let size = SizeLwh {
+        length_m: args.length_m.unwrap_or(known.length_m),
+        width_m: args.width_m.unwrap_or(known.width_m),
+        height_m: args.height_m.unwrap_or(known.height_m),
+    };
     let group = SizeGroup {
         classes: vec![class.clone()],
         size,

@@ -89,17 +89,19 @@ fn pose_unknown() -> PoseWithCovariance {
     pose
 }
 
+/// Measured by edges, as the box itself is, so that centre and size give back its corners.
 fn box_2d(box_px: &BoxPx) -> BoundingBox2D {
-    let middle = box_px.center();
+    let [x_min, y_min, x_max, y_max] =
+        [box_px.x_min, box_px.y_min, box_px.x_max, box_px.y_max].map(f64::from);
     BoundingBox2D {
         center: Pose2D {
             position: Point2D {
-                x: middle.x,
-                y: middle.y,
+                x: (x_min + x_max) / 2.0,
+                y: (y_min + y_max) / 2.0,
             },
             theta: 0.0,
         },
-        size_x: f64::from(box_px.x_max) - f64::from(box_px.x_min),
-        size_y: f64::from(box_px.y_max) - f64::from(box_px.y_min),
+        size_x: x_max - x_min,
+        size_y: y_max - y_min,
     }
 }
