@@ -20,7 +20,7 @@ pub struct SizeLwh {
 /// How a location was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Method {
-    /// Triangle similarity with a measured focal value (METHOD.md, eq. 1 and 2).
+    /// Triangle similarity with a measured focal value (docs/method.md, eq. 1 and 2).
     TriangleMeasuredF,
     /// Triangle similarity with `fy` of the intrinsics (eq. 2).
     TriangleFy,
@@ -78,7 +78,7 @@ pub struct Location {
     pub size: SizeLwh,
     /// How it was found.
     pub method: Method,
-    /// True when this is an earlier location kept because this frame gave none (METHOD.md, section 3).
+    /// True when this is an earlier location kept because this frame gave none (docs/method.md, section 3).
     pub held: bool,
 }
 

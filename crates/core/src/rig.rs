@@ -8,7 +8,7 @@ use crate::{
 };
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
-/// A camera whose optical axis is closer than this to vertical has no usable azimuth (METHOD.md, section 3).
+/// A camera whose optical axis is closer than this to vertical has no usable azimuth (docs/method.md, section 3).
 const MIN_ANGLE_FROM_VERTICAL_DEG: f64 = 20.0;
 
 /// A focal value measured with an object of known size at a known distance (eq. 1), pixels.
@@ -66,7 +66,7 @@ pub struct LooksVertical {
 }
 
 impl RigCamera {
-    /// The camera-ground space of METHOD.md, section 3: `base = Rz(azimuth) * (LocY, -LocX) + foot`.
+    /// The camera-ground space of docs/method.md, section 3: `base = Rz(azimuth) * (LocY, -LocX) + foot`.
     ///
     /// # Errors
     /// When the optical axis is within 20 degrees of vertical.

@@ -2,7 +2,7 @@
 
 use crate::{frame::CameraId, location::Oriented, time::Timestamp};
 
-/// An identity. With left-to-right order it is the place in the row, per camera (METHOD.md, section 7).
+/// An identity. With left-to-right order it is the place in the row, per camera (docs/method.md, section 7).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct TrackId(pub u64);
 

@@ -10,7 +10,7 @@ pub trait Space: Copy + std::fmt::Debug + Send + Sync + 'static {}
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Optical;
 /// The ground below a camera: x along the horizontal projection of the optical axis, y left, z up,
-/// origin at the camera's foot on the ground plane, metres. `LocX = -y`, `LocY = x` (METHOD.md, section 3).
+/// origin at the camera's foot on the ground plane, metres. `LocX = -y`, `LocY = x` (docs/method.md, section 3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraGround;
 /// The vehicle: x forward, y left, z up (REP-105 `base_link`), metres.

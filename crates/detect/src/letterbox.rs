@@ -11,8 +11,6 @@ const PADDING: f32 = 114.0;
 const CHANNELS: usize = 3;
 /// Fixed-point weights sum to this, as in OpenCV (`INTER_RESIZE_COEF_SCALE`).
 const WEIGHT_ONE: f64 = 2048.0;
-/// Bits for one channel in [`mix`]: `255 * 2048` needs 19, and three lanes must fit 64.
-const LANE_BITS: usize = 21;
 
 /// Where the image sits inside the network's input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,8 +48,8 @@ pub struct Letterbox {
 struct Tap {
     near: usize,
     far: usize,
-    near_weight: u64,
-    far_weight: u64,
+    near_weight: u32,
+    far_weight: u32,
 }
 
 /// Scratch rows of [`Letterbox::fill`]; kept between frames so that none is allocated per frame.
@@ -179,10 +177,22 @@ impl Letterbox {
         let (green, red) = rest.split_at_mut(width);
         let taps = self.columns.iter();
         for (((tap, blue), green), red) in taps.zip(blue).zip(green).zip(red) {
-            let mixed = mix(source, *tap);
-            *blue = (mixed >> 4) as i16;
-            *green = (mixed >> (LANE_BITS + 4)) as i16;
-            *red = (mixed >> (2 * LANE_BITS + 4)) as i16;
+            let start = tap.near * CHANNELS;
+            // An image one pixel wide has no second pixel.
+            let Some(pair) = source
+                .get(start..)
+                .and_then(<[u8]>::first_chunk::<{ 2 * CHANNELS }>)
+            else {
+                [*blue, *green, *red] = std::array::from_fn(|c| i16::from(source[start + c]) << 7);
+                continue;
+            };
+            let mix = |c: usize| {
+                let near = u32::from(pair[c]) * tap.near_weight;
+                ((near + u32::from(pair[CHANNELS + c]) * tap.far_weight) >> 4) as i16
+            };
+            *blue = mix(0);
+            *green = mix(1);
+            *red = mix(2);
         }
     }
 
@@ -203,31 +213,6 @@ impl Letterbox {
             blend(near, far, weights, scale, &mut input[start..start + width]);
         }
     }
-}
-
-/// Two neighbouring pixels mixed horizontally, all three channels in one number: each has a lane of
-/// [`LANE_BITS`], wide enough for 255 times the weights' sum, so that one multiplication does for three.
-fn mix(source: &[u8], tap: Tap) -> u64 {
-    let start = tap.near * CHANNELS;
-    let pair = match source[start..].first_chunk() {
-        Some(bytes) => u64::from_le_bytes(*bytes),
-        None => last_pair(&source[start..]),
-    };
-    let lanes = |pixel: u64| {
-        (pixel & 0xff)
-            | (pixel & 0xff00) << (LANE_BITS - 8)
-            | (pixel & 0xff_0000) << (2 * (LANE_BITS - 8))
-    };
-    lanes(pair) * tap.near_weight + lanes(pair >> (8 * CHANNELS)) * tap.far_weight
-}
-
-/// The last two pixels of an image, behind which there are no eight bytes to read; of an image one pixel
-/// wide, that pixel twice.
-fn last_pair(rest: &[u8]) -> u64 {
-    let byte = |at: usize| rest.get(at).or_else(|| rest.get(at % CHANNELS));
-    (0..2 * CHANNELS).rev().fold(0, |pair, at| {
-        pair << 8 | byte(at).map_or(0, |&byte| u64::from(byte))
-    })
 }
 
 /// Two rows mixed vertically, with OpenCV's shifts, which set the rounding: the high halves of 16-bit
@@ -253,8 +238,8 @@ fn taps(source: usize, resized: usize) -> Vec<Tap> {
             Tap {
                 near,
                 far: (near + 1).min(last),
-                near_weight: ((1.0 - far_share) * WEIGHT_ONE).round_ties_even() as u64,
-                far_weight: (far_share * WEIGHT_ONE).round_ties_even() as u64,
+                near_weight: ((1.0 - far_share) * WEIGHT_ONE).round_ties_even() as u32,
+                far_weight: (far_share * WEIGHT_ONE).round_ties_even() as u32,
             }
         })
         .collect()

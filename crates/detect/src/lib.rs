@@ -10,11 +10,13 @@ pub mod head;
 pub mod letterbox;
 pub mod network;
 pub mod nms;
+pub mod options;
 pub mod runtime;
 mod workspace;
 
 pub use class_names::COCO_CLASSES;
-pub use detector::{ClassFilter, DetectorError, DetectorOptions, YoloDetector};
+pub use detector::YoloDetector;
 pub use head::{Family, Head, UnknownHead};
 pub use network::{Network, NetworkError, NetworkOptions};
+pub use options::{ClassFilter, DetectorError, DetectorOptions};
 pub use runtime::{Runtime, RuntimeError};

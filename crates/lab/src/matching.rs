@@ -3,7 +3,7 @@
 use crate::truth::TruthObject;
 use roadwatch_core::{BoxPx, Detection};
 
-/// Least overlap of a detection and the labelled object it is taken for (METHOD.md, section 9).
+/// Least overlap of a detection and the labelled object it is taken for (docs/method.md, section 9).
 pub const MIN_IOU: f32 = 0.5;
 
 /// Which labelled objects are scored.
@@ -20,7 +20,7 @@ pub struct TruthFilter {
 }
 
 impl Default for TruthFilter {
-    /// *Clean* cars in a 960x540 image (METHOD.md, section 9).
+    /// *Clean* cars in a 960x540 image (docs/method.md, section 9).
     fn default() -> Self {
         Self {
             min_height_px: 20.0,

@@ -1,4 +1,4 @@
-//! Keeping an object's last location for a while when this frame gives none (METHOD.md, section 3).
+//! Keeping an object's last location for a while when this frame gives none (docs/method.md, section 3).
 
 use nalgebra::{Matrix3, Vector3};
 use roadwatch_core::{Location, Prior, space::Covariance};

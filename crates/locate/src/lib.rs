@@ -1,6 +1,6 @@
 //! Distance and location of a detected box, with covariance.
 //!
-//! Every method of METHOD.md, sections 2 and 3, for one camera: triangle similarity, the look-up table
+//! Every method of docs/method.md, sections 2 and 3, for one camera: triangle similarity, the look-up table
 //! with its exact index, and the ground plane. Nothing here sees an image or remembers a frame: what
 //! earlier frames know comes in as a [`roadwatch_core::Prior`].
 

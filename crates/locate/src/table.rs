@@ -1,4 +1,4 @@
-//! The look-up table of METHOD.md, section 3: what boxes look like at known places.
+//! The look-up table of docs/method.md, section 3: what boxes look like at known places.
 
 mod build;
 mod calibration;

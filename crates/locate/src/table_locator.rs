@@ -150,7 +150,7 @@ impl TableLocator {
     }
 
     /// Places a box where its row says; the centre is half the group's height above the ground. `None`
-    /// when there is no match (METHOD.md, section 3).
+    /// when there is no match (docs/method.md, section 3).
     ///
     /// The covariance adds up: box noise and the spread of real heights, each by asking again with the
     /// box moved; how far the rows that match nearly as well are from the published one; what the row

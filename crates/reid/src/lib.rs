@@ -1,6 +1,6 @@
 //! Who is who: the only memory of objects.
 //!
-//! [`LeftToRight`] is the paper's way (METHOD.md, section 7): objects keep their places in the row.
+//! [`LeftToRight`] is the paper's way (docs/method.md, section 7): objects keep their places in the row.
 
 pub mod left_to_right;
 

@@ -167,7 +167,17 @@ fn note_lonely(cameras: &[CameraConfig], spans: &[Span], notes: &mut Notes) {
     for (camera, span) in cameras.iter().zip(spans) {
         if first.is_some_and(|first| !meets(first, span)) {
             let what = "this recording begins after another of the rig has ended; give both matching start stamps";
-            notes.note(&format!("{}.start_stamp", camera.key), what);
+            notes.note(&start_key(camera), what);
+        }
+    }
+}
+
+/// The key that says when a camera's recording begins.
+fn start_key(camera: &CameraConfig) -> String {
+    match camera.source {
+        SourceConfig::Dataset(_) => camera.key.clone(),
+        SourceConfig::Images { .. } | SourceConfig::Video { .. } => {
+            format!("{}.start_stamp", camera.key)
         }
     }
 }

@@ -12,7 +12,7 @@ pub const DEFAULT_WEIGHT_WIDTH_PX: u32 = 960;
 const LARGEST_NUMBER: f32 = 1e9;
 
 /// The paper's `W` or `dis_weight` in eq. 7, which it calls both a weighting factor and the known width
-/// of the object's bounding box (METHOD.md, section 3).
+/// of the object's bounding box (docs/method.md, section 3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Weight {
     /// A number, in pixels per metre of an image of the stated width.

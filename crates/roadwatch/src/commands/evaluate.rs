@@ -11,9 +11,9 @@ use anyhow::{Context as _, anyhow};
 use roadwatch_camera::{Pace, PlaybackOptions, Repeat, RigDataset};
 use roadwatch_core::Method;
 use roadwatch_lab::{
-    Evaluation, MethodUnderTest, Recorder, Truth, TruthFilter, evaluate::evaluate,
+    Evaluation, MethodUnderTest, Recorded, Recorder, Truth, TruthFilter, evaluate::evaluate,
 };
-use roadwatch_pipeline::{NamedSink, Overload, PipelineOptions};
+use roadwatch_pipeline::{NamedSink, Overload, PipelineOptions, Running};
 use std::{sync::Arc, time::Duration};
 
 /// Often enough for a bar to look alive.
@@ -35,28 +35,9 @@ pub fn run(args: &EvaluateArgs) -> Result<(), Failure> {
     let truth = Truth::read(dataset.folder()).context("nothing can be scored")?;
     check_classes(args, &truth)?;
     let rig = Arc::clone(&session.rig);
-    let recorder = Recorder::default();
-    let sink = NamedSink {
-        name: "recorder".to_owned(),
-        sink: Box::new(recorder.clone()),
-    };
     let frames = dataset.frames().len() as u64;
     let images = args.frames.map_or(frames, |limit| limit.min(frames)) * rig.cameras().len() as u64;
-    let mut progress = Progress::new(images, "images");
-    let running = session.start(vec![sink], PipelineOptions::new(Overload::Wait))?;
-    watch(
-        &running,
-        PROGRESS_PERIOD,
-        || false,
-        |running| {
-            let done = rig
-                .ids()
-                .map(|camera| running.metrics().camera(camera).published)
-                .sum();
-            progress.set(done);
-        },
-    )?;
-    progress.finish();
+    let recorded = perceive(session, Progress::new(images, "images"))?;
     let filter = TruthFilter {
         min_height_px: args.min_height_px,
         max_occluded: args.max_occluded,
@@ -70,7 +51,7 @@ pub fn run(args: &EvaluateArgs) -> Result<(), Failure> {
         filter: &filter,
         frame_limit: args.frames,
     };
-    let report = evaluate(&evaluation, &recorder.take(), &methods(&config));
+    let report = evaluate(&evaluation, &recorded, &methods(&config));
     report
         .write(&args.out)
         .context("the evaluation is done but not kept")?;
@@ -84,6 +65,26 @@ pub fn run(args: &EvaluateArgs) -> Result<(), Failure> {
         args.out.display()
     );
     Ok(())
+}
+
+/// Runs the pipeline over everything and keeps what it perceives.
+fn perceive(session: Session, mut progress: Progress) -> Result<Vec<Recorded>, Failure> {
+    let rig = Arc::clone(&session.rig);
+    let recorder = Recorder::default();
+    let sink = NamedSink {
+        name: "recorder".to_owned(),
+        sink: Box::new(recorder.clone()),
+    };
+    let running = session.start(vec![sink], PipelineOptions::new(Overload::Wait))?;
+    let report = |running: &Running| {
+        let published = rig
+            .ids()
+            .map(|camera| running.metrics().camera(camera).published);
+        progress.set(published.sum());
+    };
+    watch(&running, PROGRESS_PERIOD, || false, report)?;
+    progress.finish();
+    Ok(recorder.take())
 }
 
 /// A class that nobody labelled is a slip: its report would be empty.
