@@ -93,7 +93,8 @@ pub(crate) struct OneBoxDetector {
 /// Tells that a call arrived, and waits to be let through.
 pub(crate) struct Gate {
     pub(crate) arrived: SyncSender<()>,
-    pub(crate) open: Mutex<Receiver<()>>,
+    /// One for each camera, or one for all.
+    pub(crate) open: Vec<Mutex<Receiver<()>>>,
 }
 
 impl Detector for OneBoxDetector {
@@ -102,7 +103,8 @@ impl Detector for OneBoxDetector {
         if let Some(gate) = &self.gate {
             gate.arrived.send(()).expect("the test listens");
             // A closed gate stands open.
-            gate.open.lock().expect("gate").recv().ok();
+            let own = frames[0].camera.index().min(gate.open.len() - 1);
+            gate.open[own].lock().expect("gate").recv().ok();
         }
         let found = |frame: Frame| {
             let pixels = frame.image.pixels();
@@ -281,15 +283,17 @@ impl World {
     }
 }
 
+/// One gate for all cameras.
 pub(crate) fn gate() -> (Gate, Receiver<()>, SyncSender<()>) {
+    let (gate, arrivals, mut openers) = gates(1);
+    (gate, arrivals, openers.remove(0))
+}
+
+/// A gate for each camera.
+pub(crate) fn gates(count: usize) -> (Gate, Receiver<()>, Vec<SyncSender<()>>) {
     let (arrived, arrivals) = sync_channel(ROOM);
-    let (opener, open) = sync_channel(ROOM);
-    (
-        Gate {
-            arrived,
-            open: Mutex::new(open),
-        },
-        arrivals,
-        opener,
-    )
+    let (openers, open) = (0..count).map(|_| sync_channel(ROOM)).unzip();
+    let open: Vec<Receiver<()>> = open;
+    let open = open.into_iter().map(Mutex::new).collect();
+    (Gate { arrived, open }, arrivals, openers)
 }
