@@ -89,13 +89,13 @@ mod tests {
 
     #[test]
     fn a_variable_counts_from_the_working_folder_and_a_default_from_the_file() {
-        let set = Environment::new(&[("DATA", "../d")], PathBuf::from("/work"));
-        let unset = Environment::new(&[], PathBuf::from("/work"));
+        let set = Environment::new(&[("DATA", "../d")], PathBuf::from("/home/me"));
+        let unset = Environment::new(&[], PathBuf::from("/home/me"));
         let folder = Path::new("/etc/rw");
         let text = "${DATA:-../x}/a.onnx";
         assert_eq!(
             set.expand_path(text, folder),
-            Ok(PathBuf::from("/work/../d/a.onnx"))
+            Ok(PathBuf::from("/home/me/../d/a.onnx"))
         );
         assert_eq!(
             unset.expand_path(text, folder),
