@@ -127,9 +127,14 @@ pub(crate) fn peer_json(python: &Path, script: &str, arguments: &[&str]) -> serd
     serde_json::from_slice(&output.stdout).expect("the peer prints JSON")
 }
 
-/// The shipped configuration for the shared drive, without ROS unless a test adds it.
+/// The shipped configuration for the shared drive, without its `[[camera]]` tables, so that tests add their own;
+/// `node` goes into `[node]`.
 pub(crate) fn pandaset_config(shared: &Path, node: &str) -> String {
     let shipped = std::fs::read_to_string(root().join("config/pandaset.toml")).expect("shipped");
+    let shipped = shipped
+        .split("[[camera]]")
+        .next()
+        .expect("what comes before");
     let placed = shipped.replace(
         "${ROADWATCH_SHARED:-../../shared}",
         &shared.display().to_string(),
