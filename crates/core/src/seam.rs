@@ -7,7 +7,11 @@ use crate::{
     scene::{Scene, Track},
     time::Timestamp,
 };
-use std::{error::Error, sync::Arc, time::Instant};
+use std::{
+    error::Error,
+    sync::Arc,
+    time::{Duration, Instant},
+};
 
 type Cause = Box<dyn Error + Send + Sync>;
 
@@ -57,6 +61,12 @@ pub trait Detector: Send + Sync {
     /// The most frames one call takes at an advantage; 1 where the model's batch axis is fixed.
     fn max_batch(&self) -> usize {
         1
+    }
+
+    /// How long the next call can begin later without losing throughput, because the network is busy until
+    /// then: frames taken later are newer. Zero when it is free.
+    fn hold_off(&self) -> Duration {
+        Duration::ZERO
     }
 }
 

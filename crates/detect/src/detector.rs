@@ -6,13 +6,17 @@ use crate::{
     network::Network,
     nms::{Candidate, suppress},
     options::{DetectorError, DetectorOptions, class_names, thresholds},
+    rhythm::Rhythm,
     runtime::Runtime,
     workspace::{Workspace, Workspaces},
 };
 use roadwatch_core::{
     DetectError, Detection, Detector, Frame, ImageSize, ObjectClass, PerFrame, Score,
 };
-use std::sync::{Arc, Mutex, PoisonError, RwLock};
+use std::{
+    sync::{Arc, Mutex, PoisonError, RwLock},
+    time::{Duration, Instant},
+};
 
 /// A YOLO network as a [`Detector`]. Calls may overlap: one prepares images while another runs the network.
 pub struct YoloDetector {
@@ -28,6 +32,7 @@ pub struct YoloDetector {
     max_detections: usize,
     letterboxes: RwLock<Vec<Arc<Letterbox>>>,
     workspaces: Workspaces,
+    rhythm: Rhythm,
 }
 
 impl YoloDetector {
@@ -63,6 +68,7 @@ impl YoloDetector {
             max_detections: options.max_detections,
             letterboxes: RwLock::default(),
             workspaces: Workspaces::default(),
+            rhythm: Rhythm::default(),
         })
     }
 
@@ -120,11 +126,13 @@ impl YoloDetector {
         raw.resize_with(self.batch, Vec::new);
         raw.iter_mut().for_each(Vec::clear);
         let mut network = self.network.lock().unwrap_or_else(PoisonError::into_inner);
-        network
-            .run(input, images, |at, head, output| {
-                head.decode(output, &self.thresholds, best, &mut raw[at]);
-            })
-            .map_err(|error| error.to_string())
+        let began = Instant::now();
+        self.rhythm.running(began);
+        let ran = network.run(input, images, |at, head, output| {
+            head.decode(output, &self.thresholds, best, &mut raw[at]);
+        });
+        self.rhythm.ran(began.elapsed());
+        ran.map_err(|error| error.to_string())
     }
 
     fn select(
@@ -163,6 +171,8 @@ impl YoloDetector {
     ) -> Vec<Result<PerFrame<Detection>, DetectError>> {
         work.input
             .resize(self.batch * Letterbox::input_len(self.input_size), 0.0);
+        let began = Instant::now();
+        self.rhythm.preparing(began);
         let mut images = 0;
         let prepared: Vec<_> = frames
             .into_iter()
@@ -172,6 +182,7 @@ impl YoloDetector {
                 Ok(prepared)
             })
             .collect();
+        self.rhythm.prepared(began.elapsed());
         let inferred = if images > 0 {
             self.infer(images, work)
         } else {
@@ -215,5 +226,9 @@ impl Detector for YoloDetector {
 
     fn max_batch(&self) -> usize {
         self.batch
+    }
+
+    fn hold_off(&self) -> Duration {
+        self.rhythm.hold_off(Instant::now())
     }
 }

@@ -11,6 +11,7 @@ pub mod letterbox;
 pub mod network;
 pub mod nms;
 pub mod options;
+mod rhythm;
 pub mod runtime;
 mod workspace;
 

@@ -93,7 +93,8 @@ impl Lane {
     pub(crate) fn run(self) {
         let mut warnings = WarnLimit::default();
         let max_batch = self.detector.max_batch();
-        while let Some(batch) = self.inbox.take(max_batch) {
+        let hold_off = || self.detector.hold_off();
+        while let Some(batch) = self.inbox.take(max_batch, hold_off) {
             let taken_at = self.clock.now();
             let (frames, takes) = self.split(batch.taken, taken_at);
             let results = self.detector.detect(frames);

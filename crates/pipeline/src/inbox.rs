@@ -166,16 +166,21 @@ impl Receiver {
     /// Waits for the next frames, at least one and at most `max`; `None` once every camera is closed and
     /// every slot empty.
     ///
-    /// With [`Overload::Wait`] a batch is full unless the cameras end, whatever the timing.
+    /// With [`Overload::Wait`] a batch is full unless the cameras end, whatever the timing. With
+    /// [`Overload::NewestWins`] frames stay in their slots for `hold_off` (asked when it is this call's turn),
+    /// where newer ones replace them.
     #[must_use]
-    pub fn take(&self, max: usize) -> Option<Batch> {
+    pub fn take(&self, max: usize, hold_off: impl FnOnce() -> Duration) -> Option<Batch> {
         let _turn = self
             .shared
             .taking
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
         let taken = match self.shared.overload {
-            Overload::NewestWins => self.take_waiting(max),
+            Overload::NewestWins => {
+                self.rest(hold_off());
+                self.take_waiting(max)
+            }
             Overload::Wait => self.take_in_order(max),
         };
         if taken.is_empty() {
@@ -202,6 +207,17 @@ impl Receiver {
     pub fn is_busy(&self) -> bool {
         let state = self.shared.lock();
         state.in_work > 0 || state.slots.iter().any(|slot| slot.frame.is_some())
+    }
+
+    /// Waits, not longer than there are cameras that could bring something newer.
+    fn rest(&self, hold_off: Duration) {
+        let any_open = |state: &mut State| state.slots.iter().any(|slot| slot.open);
+        let state = self.shared.lock();
+        drop(
+            self.shared
+                .changed
+                .wait_timeout_while(state, hold_off, any_open),
+        );
     }
 
     fn take_waiting(&self, max: usize) -> Vec<Taken> {

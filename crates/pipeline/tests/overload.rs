@@ -2,10 +2,16 @@
 
 mod support;
 
-use roadwatch_core::CameraId;
-use roadwatch_pipeline::{DropReason, Edge, NamedSink, Overload, PipelineOptions};
-use std::sync::{atomic::Ordering, mpsc::sync_channel};
-use support::{ChannelSink, PATIENCE, gate, world, world_with};
+use roadwatch_core::{CameraId, FrameSource};
+use roadwatch_pipeline::{
+    DropReason, Edge, NamedSink, Overload, PipelineOptions,
+    inbox::{Put, inbox},
+};
+use std::{
+    sync::{Arc, atomic::Ordering, mpsc::sync_channel},
+    time::{Duration, Instant},
+};
+use support::{ChannelSink, ChannelSource, PATIENCE, RealClock, gate, world, world_with};
 
 #[test]
 fn a_busy_detector_gets_the_newest_frame_and_the_others_are_never_decoded() {
@@ -97,4 +103,30 @@ fn a_sink_that_hangs_loses_its_outputs_and_holds_up_nobody() {
     assert_eq!(counts.dropped, 37);
     assert_eq!(counts.delivered + counts.failed, 3);
     assert_eq!(running.metrics().sink(0).delivered, 40);
+}
+
+#[test]
+fn a_frame_stays_in_its_slot_until_the_detector_can_use_it() {
+    let (mut senders, receiver) = inbox(1, Overload::NewestWins, Arc::new(RealClock));
+    let sender = senders.remove(0);
+    let (stamps, sent) = sync_channel(2);
+    let mut source = ChannelSource::new(CameraId(0), sent);
+    let mut put = |stamp| {
+        stamps.send(stamp).expect("room");
+        let frame = source.next_frame(Instant::now() + PATIENCE);
+        sender.put(frame.expect("a frame"))
+    };
+    assert_eq!(put(1), Put::Stored);
+    let batch = receiver.take(1, || {
+        assert_eq!(put(2), Put::Replaced);
+        Duration::from_millis(1)
+    });
+    let stamps: Vec<_> = batch.expect("a batch").taken;
+    assert_eq!(stamps[0].frame.captured_at.as_nanos(), 2);
+    assert_eq!(put(3), Put::Stored);
+    drop(senders);
+    drop(sender);
+    // Nothing newer can come, so nobody waits the hour.
+    let batch = receiver.take(1, || Duration::from_secs(3600));
+    assert_eq!(batch.expect("a batch").taken.len(), 1);
 }
