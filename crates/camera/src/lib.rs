@@ -6,6 +6,7 @@
 //!
 //! [`FrameSource`]: roadwatch_core::FrameSource
 
+mod any_recording;
 pub mod counted;
 pub mod frame_rate;
 pub mod image_sequence;
@@ -19,6 +20,7 @@ pub mod still_image;
 mod video_clock;
 pub mod video_file;
 
+pub use any_recording::AnyRecording;
 pub use counted::{Counted, DecodeCount};
 pub use frame_rate::FrameRate;
 pub use image_sequence::{ImageSequence, SequenceError, StampedFile};

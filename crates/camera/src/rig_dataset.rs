@@ -1,4 +1,4 @@
-//! The rig dataset: a folder with `rig.toml`, `frames.jsonl` and one folder of images per camera.
+//! The rig dataset: a folder with `rig.toml`, `frames.jsonl` and, per camera, a folder of images or one clip.
 
 mod error;
 mod frames_file;
@@ -8,9 +8,12 @@ pub use error::{DatasetError, FramesProblem, RigProblem};
 pub use rig_file::read_rig_file;
 
 use crate::{
+    any_recording::AnyRecording,
     image_sequence::{ImageSequence, SequenceError, StampedFile},
     playback::{Playback, PlaybackOptions},
     player::Recording,
+    span::Span,
+    video_file::VideoFile,
 };
 use nalgebra::Isometry3;
 use roadwatch_core::{RigCamera, Timestamp};
@@ -22,6 +25,7 @@ use std::{
 
 const RIG_FILE: &str = "rig.toml";
 const FRAMES_FILE: &str = "frames.jsonl";
+const CLIP_EXTENSION: &str = "mp4";
 
 /// One line of `frames.jsonl`.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,13 +38,26 @@ pub struct DatasetFrame {
     pub world_from_base: Option<Isometry3<f64>>,
 }
 
-/// A rig dataset, read and checked; images are only read when they are played.
+/// A rig dataset, read and checked; images and clips are only read when they are played.
 #[derive(Clone, Debug)]
 pub struct RigDataset {
     folder: PathBuf,
     cameras: Vec<RigCamera>,
     frames: Vec<DatasetFrame>,
-    sequences: Vec<ImageSequence>,
+    stored: Vec<Stored>,
+}
+
+/// What a camera saw, as it lies in the dataset.
+#[derive(Clone, Debug)]
+enum Stored {
+    /// `<camera>/0000.jpg` and so on.
+    Images(ImageSequence),
+    /// `<camera>.mp4`, with one frame per stamp.
+    Clip {
+        file: PathBuf,
+        stamps: Vec<Timestamp>,
+        span: Span,
+    },
 }
 
 impl RigDataset {
@@ -52,16 +69,16 @@ impl RigDataset {
         let cameras = read_rig_file(&folder.join(RIG_FILE))?;
         let frames_file = folder.join(FRAMES_FILE);
         let frames = frames_file::parse(&read_text(&frames_file)?, &frames_file, &cameras)?;
-        let sequences = cameras
+        let stored = cameras
             .iter()
             .enumerate()
-            .map(|(index, camera)| sequence(folder, camera, index, &frames))
+            .map(|(index, camera)| stored(folder, camera, index, &frames))
             .collect::<Result<_, _>>()?;
         Ok(Self {
             folder: folder.to_owned(),
             cameras,
             frames,
-            sequences,
+            stored,
         })
     }
 
@@ -83,19 +100,66 @@ impl RigDataset {
         &self.frames
     }
 
-    /// The images of the camera at `index` of [`RigDataset::cameras`]; `None` when there is no such camera.
-    #[must_use]
-    pub fn recording(&self, index: usize) -> Option<ImageSequence> {
-        self.sequences.get(index).cloned()
+    /// What the camera at `index` of [`RigDataset::cameras`] saw; `None` when there is no such camera.
+    ///
+    /// # Errors
+    /// When its clip cannot be played, or has another number of frames than it has stamps.
+    pub fn recording(&self, index: usize) -> Option<Result<AnyRecording, DatasetError>> {
+        let camera = self.cameras.get(index)?;
+        Some(match self.stored.get(index)? {
+            Stored::Images(images) => Ok(AnyRecording::Images(images.clone())),
+            Stored::Clip { file, stamps, .. } => {
+                VideoFile::open_stamped(file, camera.model.size, stamps.clone())
+                    .map(AnyRecording::Video)
+                    .map_err(|source| DatasetError::Clip {
+                        camera: camera.name.clone(),
+                        source,
+                    })
+            }
+        })
     }
 
     /// A clock over all cameras of the dataset. Played cameras share it, also when only some are played, so
     /// that each frame of a camera comes at the same moment whoever else plays.
     #[must_use]
     pub fn playback(&self, options: PlaybackOptions) -> Arc<Playback> {
-        let spans: Vec<_> = self.sequences.iter().map(Recording::span).collect();
+        let spans: Vec<_> = self.stored.iter().map(Stored::span).collect();
         Playback::new(options, &spans)
     }
+}
+
+impl Stored {
+    fn span(&self) -> Span {
+        match self {
+            Self::Images(images) => images.span(),
+            Self::Clip { span, .. } => *span,
+        }
+    }
+}
+
+fn stored(
+    folder: &Path,
+    camera: &RigCamera,
+    index: usize,
+    frames: &[DatasetFrame],
+) -> Result<Stored, DatasetError> {
+    let clip = folder.join(format!("{}.{CLIP_EXTENSION}", camera.name.as_str()));
+    if !clip.is_file() {
+        return sequence(folder, camera, index, frames).map(Stored::Images);
+    }
+    let stamps: Vec<_> = frames
+        .iter()
+        .filter_map(|frame| frame.stamps[index])
+        .collect();
+    let span = Span::from_stamps(stamps.iter().copied()).ok_or_else(|| DatasetError::NoFrames {
+        camera: camera.name.clone(),
+        file: folder.join(FRAMES_FILE),
+    })?;
+    Ok(Stored::Clip {
+        file: clip,
+        stamps,
+        span,
+    })
 }
 
 fn sequence(

@@ -67,6 +67,16 @@ pub enum VideoError {
         /// The header's frames per second.
         hz: f64,
     },
+    /// Another number of frames than stamps.
+    #[error("the video `{}` has {found} frames, and {stamps} stamps are given for them", file.display())]
+    OtherCount {
+        /// The file.
+        file: PathBuf,
+        /// Frames in the file.
+        found: u64,
+        /// Stamps given.
+        stamps: usize,
+    },
     /// There is no frame in it.
     #[error("the video `{}` has no frame", file.display())]
     NoFrames {
@@ -77,7 +87,8 @@ pub enum VideoError {
 
 /// A video file as a recording.
 ///
-/// A frame's stamp is the start plus its presentation time, made exact where it follows the header's frame rate.
+/// A frame's stamp is the one listed for it or, where none are listed, the start plus its presentation time, made
+/// exact where it follows the header's frame rate.
 /// The decoder holds one frame at a time, so each image is decoded here, before it is due, and not when
 /// somebody looks: replaced frames of a video have cost their decoding. Where the file breaks off inside a frame,
 /// FFmpeg may still give that last one, partly invented.
@@ -85,11 +96,20 @@ pub enum VideoError {
 pub struct VideoFile {
     file: PathBuf,
     size: ImageSize,
-    start: Timestamp,
+    stamps: Stamps,
     rate: FrameRate,
     frames_in_header: u64,
     lap: Lap,
     short_lap: ShortLap,
+}
+
+/// Where stamps come from.
+#[derive(Debug)]
+enum Stamps {
+    /// The container's presentation times, counted from this.
+    Container(Timestamp),
+    /// One for each frame, at least one.
+    Listed(Vec<Timestamp>, Span),
 }
 
 /// One pass through the file.
@@ -123,6 +143,34 @@ impl VideoFile {
     /// # Errors
     /// When the file cannot be read, is no video, has no frame or no frame rate, or is not `size`.
     pub fn open(path: &Path, size: ImageSize, start: Timestamp) -> Result<Self, VideoError> {
+        Self::with_stamps(path, size, Stamps::Container(start))
+    }
+
+    /// Opens a video whose frames were captured at these rising `stamps`.
+    ///
+    /// # Errors
+    /// As for [`VideoFile::open`], and when there are more or fewer stamps than frames.
+    pub fn open_stamped(
+        path: &Path,
+        size: ImageSize,
+        stamps: Vec<Timestamp>,
+    ) -> Result<Self, VideoError> {
+        let count = stamps.len();
+        let other_count = |found| VideoError::OtherCount {
+            file: path.to_owned(),
+            found,
+            stamps: count,
+        };
+        let span = Span::from_stamps(stamps.iter().copied()).ok_or_else(|| other_count(0))?;
+        let video = Self::with_stamps(path, size, Stamps::Listed(stamps, span))?;
+        if video.frames_in_header == count as u64 {
+            Ok(video)
+        } else {
+            Err(other_count(video.frames_in_header))
+        }
+    }
+
+    fn with_stamps(path: &Path, size: ImageSize, stamps: Stamps) -> Result<Self, VideoError> {
         let file = || path.to_owned();
         let opencv = |source| VideoError::OpenCv {
             file: path.to_owned(),
@@ -149,7 +197,7 @@ impl VideoFile {
         Ok(Self {
             file: file(),
             size,
-            start,
+            stamps,
             rate,
             frames_in_header,
             lap: Lap::new(capture, rate),
@@ -170,6 +218,16 @@ impl VideoFile {
             frames_in_header = self.frames_in_header,
             "video ended before its last frame"
         );
+    }
+}
+
+impl Stamps {
+    /// The stamp of a frame with its place and its offset from the first; `None` behind the last listed one.
+    fn of(&self, place: u64, offset: Duration) -> Option<Timestamp> {
+        match self {
+            Self::Container(start) => Some(start.saturating_add(offset)),
+            Self::Listed(stamps, _) => stamps.get(usize::try_from(place).ok()?).copied(),
+        }
     }
 }
 
@@ -196,12 +254,13 @@ impl Lap {
 
 impl Recording for VideoFile {
     fn span(&self) -> Span {
-        Span {
-            first: self.start,
-            last: self
-                .start
-                .saturating_add(self.rate.offset(self.frames_in_header - 1)),
-            interval: self.rate.interval(),
+        match &self.stamps {
+            Stamps::Container(start) => Span {
+                first: *start,
+                last: start.saturating_add(self.rate.offset(self.frames_in_header - 1)),
+                interval: self.rate.interval(),
+            },
+            Stamps::Listed(_, span) => *span,
         }
     }
 
@@ -213,9 +272,9 @@ impl Recording for VideoFile {
         }
         match self.lap.grab() {
             Ok(Some(offset)) => {
-                let stamp = self.start.saturating_add(offset);
-                self.lap.stage = Stage::Holding(stamp);
-                Ok(Some(stamp))
+                let stamp = self.stamps.of(self.lap.frames_read - 1, offset);
+                self.lap.stage = stamp.map_or(Stage::AtEnd, Stage::Holding);
+                Ok(stamp)
             }
             Ok(None) => {
                 self.lap.stage = Stage::AtEnd;

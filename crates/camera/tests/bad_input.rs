@@ -4,8 +4,8 @@ mod made;
 
 use made::{FRAMES, SIZE, fast, is_image_of, next, start};
 use roadwatch_camera::{
-    DatasetError, DecodeCount, FrameRate, ImageSequence, Playback, Player, Recording, Repeat,
-    RigDataset, SequenceError, StampedFile, VideoError, VideoFile,
+    AnyRecording, DatasetError, DecodeCount, FrameRate, ImageSequence, Playback, Player, Recording,
+    Repeat, RigDataset, SequenceError, StampedFile, VideoError, VideoFile,
 };
 use roadwatch_core::{CameraId, Frame, ImageSize, SourceError};
 use std::{
@@ -21,12 +21,12 @@ fn once(recording: impl Recording + 'static) -> Player<impl Recording> {
 }
 
 /// A dataset after `spoil` had its way with the folder, played once as `front`.
-fn front_of_spoiled(spoil: impl Fn(&Path)) -> (tempfile::TempDir, Player<ImageSequence>) {
+fn front_of_spoiled(spoil: impl Fn(&Path)) -> (tempfile::TempDir, Player<AnyRecording>) {
     let root = tempfile::tempdir().expect("a folder");
     let folder = made::rig_dataset(root.path());
     spoil(&folder.join("front"));
     let dataset = RigDataset::open(&folder).expect("a dataset");
-    let front = dataset.recording(0).expect("a camera");
+    let front = dataset.recording(0).expect("a camera").expect("plays");
     let playback = dataset.playback(fast(Repeat::Once, None));
     (root, Player::new(CameraId(0), front, playback))
 }
@@ -89,6 +89,7 @@ fn frames_nobody_looks_at_are_never_decoded() {
     let front = dataset
         .recording(0)
         .expect("a camera")
+        .expect("plays")
         .counting(decodes.clone());
     let playback = dataset.playback(fast(Repeat::Once, None));
     let mut source = Player::new(CameraId(0), front, playback);
@@ -140,7 +141,7 @@ fn a_dataset_with_a_mistake_is_refused_with_file_and_line() {
         ),
         (
             Box::new(|folder| fs::remove_dir_all(folder.join("back")).expect("removed")),
-            "camera `back` has no folder",
+            "camera `back` has no images",
         ),
         (
             Box::new(|folder| fs::remove_file(folder.join("rig.toml")).expect("removed")),
@@ -322,5 +323,23 @@ fn a_video_of_another_size_is_refused_at_open() {
             .to_string()
             .ends_with("clip.avi` is 64x48, the rig says 960x540"),
         "{error}"
+    );
+}
+
+#[test]
+fn a_clip_with_another_number_of_frames_than_stamps_is_refused() {
+    let root = tempfile::tempdir().expect("a folder");
+    let folder = made::rig_dataset(root.path());
+    made::clip_instead_of_images(&folder, "front", FRAMES - 1);
+    let dataset = RigDataset::open(&folder).expect("a dataset");
+    let error = dataset
+        .recording(0)
+        .expect("a camera")
+        .expect_err("frames are missing");
+    let text = roadwatch_core::error_chain(&error);
+    assert!(text.contains("camera `front`"), "{text}");
+    assert!(
+        text.contains(&format!("has {} frames, and {FRAMES} stamps", FRAMES - 1)),
+        "{text}"
     );
 }

@@ -20,7 +20,15 @@ type MakeSource = fn(&Path, PlaybackOptions) -> Box<dyn FrameSource>;
 
 fn rig_dataset(root: &Path, options: PlaybackOptions) -> Box<dyn FrameSource> {
     let dataset = RigDataset::open(&made::rig_dataset(root)).expect("a dataset");
-    let recording = dataset.recording(0).expect("a camera");
+    let recording = dataset.recording(0).expect("a camera").expect("plays");
+    Box::new(Player::new(CAMERA, recording, dataset.playback(options)))
+}
+
+fn rig_dataset_of_clips(root: &Path, options: PlaybackOptions) -> Box<dyn FrameSource> {
+    let folder = made::rig_dataset(root);
+    made::clip_instead_of_images(&folder, "front", FRAMES);
+    let dataset = RigDataset::open(&folder).expect("a dataset");
+    let recording = dataset.recording(0).expect("a camera").expect("plays");
     Box::new(Player::new(CAMERA, recording, dataset.playback(options)))
 }
 
@@ -84,8 +92,9 @@ fn matroska(root: &Path, options: PlaybackOptions) -> Box<dyn FrameSource> {
     )
 }
 
-const KINDS: [(&str, MakeSource); 5] = [
+const KINDS: [(&str, MakeSource); 6] = [
     ("rig dataset", rig_dataset),
+    ("rig dataset of clips", rig_dataset_of_clips),
     ("image folder", image_folder),
     ("motion jpeg", motion_jpeg),
     ("mpeg-4", mpeg4),
@@ -211,7 +220,7 @@ fn the_cameras_of_a_looping_rig_stay_in_step() {
     let dataset = RigDataset::open(&folder).expect("a dataset");
     let playback = dataset.playback(fast(Repeat::Loop, None));
     let mut stamps = [0, 1].map(|index| {
-        let recording = dataset.recording(index).expect("a camera");
+        let recording = dataset.recording(index).expect("a camera").expect("plays");
         let mut source = Player::new(CAMERA, recording, playback.clone());
         let stamps = (0..3 * FRAMES).map(move |_| next(&mut source).expect("a frame").captured_at);
         stamps.collect::<Vec<_>>().into_iter()

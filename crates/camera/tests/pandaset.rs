@@ -48,7 +48,10 @@ fn all_240_frames_play_with_the_digits_of_the_file() {
     let mut played = 0;
     for id in rig.ids() {
         let camera = rig.camera(id);
-        let recording = dataset.recording(id.index()).expect("a camera");
+        let recording = dataset
+            .recording(id.index())
+            .expect("a camera")
+            .expect("plays");
         let mut source = Player::new(id, recording, playback.clone());
         for line in text.lines() {
             let frame = next(&mut source, id);

@@ -8,7 +8,7 @@ use crate::{
     truth::{Truth, TruthObject},
 };
 use roadwatch_camera::RigDataset;
-use roadwatch_core::{CameraId, Detection, Locator, Method, Rig, RigCamera, Timestamp};
+use roadwatch_core::{CameraId, Detection, Location, Locator, Method, Rig, RigCamera, Timestamp};
 use std::collections::{BTreeMap, HashMap};
 
 /// A method with its locators, one per camera of the rig.
@@ -37,6 +37,8 @@ pub struct Evaluation<'a> {
 struct Pair<'a> {
     camera: usize,
     detection: &'a Detection,
+    /// Where it was said to be; `None` when no place was published for it.
+    published: Option<&'a Location>,
     object: &'a TruthObject,
 }
 
@@ -73,12 +75,15 @@ pub fn evaluate(
         pairs.extend(matches.pairs.iter().map(|&(detection, object)| Pair {
             camera: camera.index(),
             detection: detections[detection],
+            published: frame.location(detection),
             object: &objects[object],
         }));
     }
     let by_method = methods.iter().map(|tested| {
         let report = match &tested.locators {
-            Ok(locators) => score_method(evaluation.rig, locators, &pairs),
+            Ok(locators) => score_places(evaluation.rig, &pairs, |pair| {
+                locators[pair.camera].locate(pair.detection, None)
+            }),
             Err(reason) => MethodReport::unavailable(reason.clone()),
         };
         (tested.method, report)
@@ -88,6 +93,7 @@ pub fn evaluate(
         frames_missing: counts.images - counts.perceived,
         filter: evaluation.filter.clone(),
         detection: counts.score(),
+        published: score_places(evaluation.rig, &pairs, |pair| pair.published.cloned()),
         methods: by_method.collect::<BTreeMap<_, _>>(),
     }
 }
@@ -108,11 +114,15 @@ impl Evaluation<'_> {
     }
 }
 
-fn score_method(rig: &Rig, locators: &[Box<dyn Locator>], pairs: &[Pair<'_>]) -> MethodReport {
+fn score_places(
+    rig: &Rig,
+    pairs: &[Pair<'_>],
+    place: impl Fn(&Pair<'_>) -> Option<Location>,
+) -> MethodReport {
     let samples: Vec<Sample> = pairs
         .iter()
         .filter_map(|pair| {
-            let location = locators[pair.camera].locate(pair.detection, None)?;
+            let location = place(pair)?;
             let camera: &RigCamera = &rig.cameras()[pair.camera];
             let (found, true_center) = (location.position, pair.object.center);
             Some(Sample {

@@ -3,6 +3,7 @@
 //! There is one matcher ([`matching`]) and one scorer ([`score`]); every report is made of them.
 
 pub mod evaluate;
+pub mod labelled_table;
 pub mod matching;
 pub mod recorder;
 pub mod report;
@@ -10,6 +11,7 @@ pub mod score;
 pub mod truth;
 
 pub use evaluate::{Evaluation, MethodUnderTest, evaluate};
+pub use labelled_table::{LabelCounts, LabelledTableError, LabelledTableSpec, table_from_labels};
 pub use matching::TruthFilter;
 pub use recorder::{Recorded, Recorder};
 pub use report::{Report, ReportError};

@@ -128,6 +128,7 @@ mod tests {
             id: format!("{class}{x}"),
             class: class.to_owned(),
             box_px: BoxPx::new(x, 0.0, x + 40.0, 30.0),
+            silhouette_px: None,
             truncated: 0.0,
             occluded: 0.0,
             center: Point::new(10.0, 0.0, 0.7),

@@ -1,6 +1,6 @@
 //! A sink that keeps what was perceived, for scoring afterwards.
 
-use roadwatch_core::{CameraId, Detection, Output, Sink, SinkError, Timestamp, Track};
+use roadwatch_core::{CameraId, Detection, Location, Output, Sink, SinkError, Timestamp, Track};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// What was made of one frame, without its image.
@@ -24,6 +24,13 @@ impl Recorded {
             .iter()
             .map(|track| &track.observed.located.detection);
         located.chain(&self.unlocated)
+    }
+
+    /// The place of the detection that [`Recorded::detections`] gives at `index`; `None` without one.
+    #[must_use]
+    pub fn location(&self, index: usize) -> Option<&Location> {
+        let track = self.tracks.get(index)?;
+        Some(&track.observed.located.location)
     }
 }
 

@@ -13,6 +13,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
+/// Name of the pipeline's own answers among the methods.
+const PUBLISHED: &str = "published";
+
 /// Figures of detection.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DetectionScore {
@@ -63,6 +66,8 @@ pub struct Report {
     pub filter: TruthFilter,
     /// How well they were found.
     pub detection: DetectionScore,
+    /// How well the pipeline placed them: what it published, by the methods it was configured with.
+    pub published: MethodReport,
     /// How well they were placed, by method.
     pub methods: BTreeMap<Method, MethodReport>,
 }
@@ -77,12 +82,22 @@ pub struct ReportError {
 }
 
 impl Report {
-    /// The report as JSON: `detection.…`, `distance.<method>.…`, `location.<method>.…`.
+    /// What was published, then every method, by name.
+    fn places(&self) -> impl Iterator<Item = (&'static str, &MethodReport)> {
+        let methods = self
+            .methods
+            .iter()
+            .map(|(method, report)| (method.as_str(), report));
+        std::iter::once((PUBLISHED, &self.published)).chain(methods)
+    }
+
+    /// The report as JSON: `detection.…`, `distance.<method>.…`, `location.<method>.…`, where `published`
+    /// stands for what the pipeline published.
     #[must_use]
     pub fn to_json(&self) -> Value {
         let by_method = |value: &dyn Fn(&MethodReport) -> Value| -> Value {
-            let entries = self.methods.iter();
-            let entries = entries.map(|(method, report)| (method.to_string(), value(report)));
+            let entries = self.places();
+            let entries = entries.map(|(name, report)| (name.to_owned(), value(report)));
             Value::Object(entries.collect::<Map<_, _>>())
         };
         let unavailable = |report: &MethodReport| json!(report.unavailable);
@@ -130,7 +145,7 @@ impl Report {
             percent(detection.precision),
         );
         // Writing to a String cannot fail.
-        for (method, report) in &self.methods {
+        for (method, report) in self.places() {
             let d = &report.distance;
             writeln!(
                 text,
@@ -144,14 +159,16 @@ impl Report {
             )
             .ok();
         }
-        text.push_str("\n## Location (horizontal)\n\n| method | n | without a place | mean m | p50 m | p90 m |\n|---|---|---|---|---|---|\n");
-        for (method, report) in &self.methods {
+        text.push_str("\n## Location (horizontal)\n\n| method | n | without a place | mean m | p50 m | p90 m | <= 1.5 m |\n|---|---|---|---|---|---|---|\n");
+        for (method, report) in self.places() {
             let l = &report.location;
             let (mean, p50, p90) = (metres(l.mae_m), metres(l.p50_m), metres(l.p90_m));
             writeln!(
                 text,
-                "| {method} | {} | {} | {mean} | {p50} | {p90} |",
-                l.n, report.unlocated
+                "| {method} | {} | {} | {mean} | {p50} | {p90} | {} |",
+                l.n,
+                report.unlocated,
+                percent(l.minor_error_share),
             )
             .ok();
         }
@@ -161,6 +178,33 @@ impl Report {
             }
         }
         text
+    }
+
+    /// What a run's summary says of its accuracy, for people.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let (filter, detection) = (&self.filter, &self.detection);
+        let (distance, location) = (&self.published.distance, &self.published.location);
+        format!(
+            "against the labels ({}; at least {} px high, at most {} hidden and {} outside the image):\n  \
+             found {} of {} (recall {}), precision {}\n  \
+             location error mean {} m, median {} m, 90 % below {} m; {} of the found are within 1.5 m\n  \
+             distance error mean {} of the distance, bias {}",
+            filter.classes.join(", "),
+            filter.min_height_px,
+            percent(Some(filter.max_occluded)),
+            percent(Some(filter.max_truncated)),
+            detection.matched,
+            detection.n,
+            percent(detection.recall),
+            percent(detection.precision),
+            metres(location.mae_m),
+            metres(location.p50_m),
+            metres(location.p90_m),
+            percent(location.minor_error_share),
+            percent(distance.mean_relative_error),
+            percent(distance.bias_relative),
+        )
     }
 
     /// Writes `report.json` and `report.md` into a folder, which is made if need be.

@@ -44,6 +44,8 @@ pub struct LocationScore {
     pub p50_m: Option<f64>,
     /// Nine in ten errors are smaller, metres.
     pub p90_m: Option<f64>,
+    /// Share of errors of at most [`MAJOR_ERROR_M`].
+    pub minor_error_share: Option<f64>,
 }
 
 /// Scores distances.
@@ -66,11 +68,13 @@ pub fn score_distance(samples: &[Sample]) -> DistanceScore {
 #[must_use]
 pub fn score_location(samples: &[Sample]) -> LocationScore {
     let errors = || samples.iter().map(|sample| sample.location_error_m);
+    let minor = errors().filter(|&error| error <= MAJOR_ERROR_M).count();
     LocationScore {
         n: samples.len(),
         mae_m: mean(errors()),
         p50_m: quantile(errors(), 0.5),
         p90_m: quantile(errors(), 0.9),
+        minor_error_share: share(minor, samples.len()),
     }
 }
 
@@ -123,6 +127,7 @@ mod tests {
         assert!(near(distance.major_error_share, 1.0 / 3.0));
         let location = score_location(&samples);
         assert!(near(location.p50_m, 1.0) && near(location.p90_m, 1.8));
+        assert!(near(location.minor_error_share, 2.0 / 3.0));
     }
 
     #[test]

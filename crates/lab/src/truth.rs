@@ -22,6 +22,9 @@ pub struct TruthObject {
     pub class: String,
     /// Hull of the projected cuboid, clipped to the image, pixels; `None` when nothing of it is in the image.
     pub box_px: Option<BoxPx>,
+    /// The box that a perfect detector gives: of the object's outline as if nothing stood in front of it,
+    /// clipped to the image, pixels; `None` where the labels do not say, as with cuboids drawn by hand.
+    pub silhouette_px: Option<BoxPx>,
     /// Share of the hull outside the image, 0 to 1.
     pub truncated: f64,
     /// Share hidden by other objects, 0 to 1.
@@ -34,6 +37,14 @@ pub struct TruthObject {
 #[derive(Debug, Clone, Default)]
 pub struct Truth {
     frames: BTreeMap<(u64, String), Vec<TruthObject>>,
+}
+
+impl TruthObject {
+    /// What a detector's box comes nearest to: the silhouette's box, or the cuboid's where that is not known.
+    #[must_use]
+    pub fn seen_px(&self) -> Option<BoxPx> {
+        self.silhouette_px.or(self.box_px)
+    }
 }
 
 /// Labels that cannot be read.
@@ -73,6 +84,8 @@ struct Object {
     id: String,
     class: String,
     box_px: [f32; 4],
+    #[serde(default)]
+    silhouette_px: Option<[f32; 4]>,
     truncated: f64,
     occluded: f64,
     center_base_m: [f64; 3],
@@ -121,19 +134,78 @@ impl Truth {
         let found = self.frames.get(&(frame, camera.to_owned()));
         found.map_or(&[], Vec::as_slice)
     }
+
+    /// Every object that is labelled in a camera's images, in order of frames.
+    pub fn of_camera(&self, camera: &str) -> impl Iterator<Item = &TruthObject> {
+        let frames = self.frames.iter();
+        let frames = frames.filter(move |((_, name), _)| name == camera);
+        frames.flat_map(|(_, objects)| objects)
+    }
+}
+
+impl FromIterator<((u64, String), Vec<TruthObject>)> for Truth {
+    /// Labels by frame number and camera name.
+    fn from_iter<I>(frames: I) -> Self
+    where
+        I: IntoIterator<Item = ((u64, String), Vec<TruthObject>)>,
+    {
+        Self {
+            frames: frames.into_iter().collect(),
+        }
+    }
 }
 
 impl From<Object> for TruthObject {
     fn from(object: Object) -> Self {
-        let [x_min, y_min, x_max, y_max] = object.box_px;
         let [x, y, z] = object.center_base_m;
+        let to_box =
+            |[x_min, y_min, x_max, y_max]: [f32; 4]| BoxPx::new(x_min, y_min, x_max, y_max);
         Self {
             id: object.id,
             class: object.class,
-            box_px: BoxPx::new(x_min, y_min, x_max, y_max),
+            box_px: to_box(object.box_px),
+            silhouette_px: object.silhouette_px.and_then(to_box),
             truncated: object.truncated,
             occluded: object.occluded,
             center: Point::new(x, y, z),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LINE: &str = r#"{"frame": 3, "camera": "front", "objects": [
+        {"id": "a", "class": "car", "box_px": [10, 20, 50, 60], "truncated": 0, "occluded": 0.1,
+         "center_base_m": [20, 1, 0.7], SEEN "label": "Car"}]}"#;
+
+    fn read(seen: &str) -> Result<Truth, TruthError> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let line = LINE.replace('\n', "").replace("SEEN", seen);
+        fs::write(folder.path().join(TRUTH_FILE), line).expect("written");
+        Truth::read(folder.path())
+    }
+
+    fn seen_px(seen: &str) -> Option<BoxPx> {
+        let truth = read(seen).expect("labels");
+        truth.objects(3, "front")[0].seen_px()
+    }
+
+    #[test]
+    fn the_silhouette_is_what_is_seen_and_the_cuboid_where_there_is_none() {
+        let silhouette = r#""silhouette_px": [11, 22, 49, 59], "visible_px": 1300,"#;
+        assert_eq!(seen_px(silhouette), BoxPx::new(11.0, 22.0, 49.0, 59.0));
+        assert_eq!(seen_px(""), BoxPx::new(10.0, 20.0, 50.0, 60.0));
+        assert_eq!(
+            seen_px(r#""silhouette_px": null,"#),
+            BoxPx::new(10.0, 20.0, 50.0, 60.0)
+        );
+    }
+
+    #[test]
+    fn a_silhouette_that_is_no_box_is_named_with_its_line() {
+        let refused = read(r#""silhouette_px": [1, 2, 3],"#).expect_err("three numbers");
+        assert!(refused.to_string().contains("truth.jsonl:1"), "{refused}");
     }
 }

@@ -3,10 +3,12 @@
 mod build;
 mod calibration;
 mod csv_file;
+mod distance_fit;
 mod expected;
 mod file;
 
 mod index;
+mod labelled;
 mod query;
 mod tree;
 
@@ -17,6 +19,7 @@ pub use expected::ExpectedDistance;
 pub use file::{TableFileError, TableFormatError};
 
 pub use index::{Neighbour, Split, TableIndex};
+pub use labelled::{LabelledBox, LabelledOrigin};
 pub use query::{DEFAULT_PX_PER_METRE, DEFAULT_WEIGHT_WIDTH_PX, TableQuery, Weight};
 
 use crate::sizes::ClassSizes;

@@ -1,5 +1,9 @@
 //! The command line.
 
+mod table;
+
+pub use table::{TableBuildArgs, TableCommand, TableInspectArgs, TableQueryArgs};
+
 use crate::{commands, failure::Failure};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::{ffi::OsString, io::IsTerminal as _, path::PathBuf, process::ExitCode};
@@ -63,6 +67,7 @@ pub enum Pace {
 #[command(after_help = "Examples:\n  \
     roadwatch run config/pandaset.toml\n  \
     roadwatch run config/pandaset.toml --pace lossless --bag out\n  \
+    roadwatch run config/pandaset.toml --pace lossless --score --pictures pictures\n  \
     roadwatch run config/pandaset.toml --loop --speed 2")]
 pub struct RunArgs {
     /// The configuration file (TOML).
@@ -73,6 +78,14 @@ pub struct RunArgs {
     /// Record everything published into this folder (MCAP and metadata.yaml); it must not exist or be empty.
     #[arg(long, value_name = "OUT")]
     pub bag: Option<PathBuf>,
+    /// Draw the fullest round of the run into this folder: views.png, every camera with its 3D boxes, and
+    /// scene.png, the scene from above.
+    #[arg(long, value_name = "DIR")]
+    pub pictures: Option<PathBuf>,
+    /// Compare what was published with the labels of the dataset (truth.jsonl), and say at the end how far off
+    /// it was.
+    #[arg(long, conflicts_with = "repeat")]
+    pub score: bool,
     /// Begin recordings anew when they end; stamps keep rising.
     #[arg(long = "loop")]
     pub repeat: bool,
@@ -130,113 +143,11 @@ pub struct EvaluateArgs {
     pub json: bool,
 }
 
-fn size(text: &str) -> Result<f64, String> {
-    let size: Option<f64> = text.parse().ok();
-    size.filter(|size| (0.01..=100.0).contains(size))
-        .ok_or_else(|| "expected metres, 0.01 to 100".to_owned())
-}
-
 fn share(text: &str) -> Result<f64, String> {
     let share: Option<f64> = text.parse().ok();
     share
         .filter(|share| (0.0..=1.0).contains(share))
         .ok_or_else(|| "expected a share, 0 to 1".to_owned())
-}
-
-/// What to do with look-up tables.
-#[derive(Debug, Subcommand)]
-pub enum TableCommand {
-    /// Build a camera's table from its calibration, or import a bare 7-column CSV.
-    Build(TableBuildArgs),
-    /// Say what a table is of, and optionally export its rows as CSV.
-    Inspect(TableInspectArgs),
-    /// Ask a table where a box is.
-    Query(TableQueryArgs),
-}
-
-/// Arguments of `table build`.
-#[derive(Debug, Args)]
-#[command(after_help = "Example:\n  \
-    roadwatch table build --rig ../shared/data/pandaset-dev/rig.toml --camera front -o front.rwtable")]
-pub struct TableBuildArgs {
-    /// The rig: a `rig.toml` of a rig dataset.
-    #[arg(long, value_name = "FILE")]
-    pub rig: PathBuf,
-    /// The camera's name in the rig.
-    #[arg(long, value_name = "NAME")]
-    pub camera: String,
-    /// The table's file.
-    #[arg(short, long, value_name = "FILE")]
-    pub out: PathBuf,
-    /// The class whose size and shape the table is for.
-    #[arg(long, default_value = "car")]
-    pub class: String,
-    /// Length of the class, metres, where the configuration sets another than the built-in one.
-    #[arg(long, value_name = "M", value_parser = size)]
-    pub length_m: Option<f64>,
-    /// Width of the class, metres, likewise.
-    #[arg(long, value_name = "M", value_parser = size)]
-    pub width_m: Option<f64>,
-    /// Height of the class, metres, likewise.
-    #[arg(long, value_name = "M", value_parser = size)]
-    pub height_m: Option<f64>,
-    /// Height of the ground plane in base_link, metres.
-    #[arg(
-        long,
-        value_name = "M",
-        default_value_t = 0.0,
-        allow_negative_numbers = true
-    )]
-    pub ground_z_m: f64,
-    /// Distance of neighbouring cells, metres.
-    #[arg(long, value_name = "M")]
-    pub step_m: Option<f64>,
-    /// Greatest distance ahead, metres.
-    #[arg(long, value_name = "M")]
-    pub farthest_m: Option<f64>,
-    /// Greatest distance to either side, metres.
-    #[arg(long, value_name = "M")]
-    pub lateral_m: Option<f64>,
-    /// Headings per cell, over half a turn.
-    #[arg(long, value_name = "N")]
-    pub headings: Option<u32>,
-    /// Take the rows from this CSV (Area,Center_x,Center_y,Distance,LocX,LocY,Loc) instead of building them.
-    #[arg(long, value_name = "CSV")]
-    pub import: Option<PathBuf>,
-}
-
-/// Arguments of `table inspect`.
-#[derive(Debug, Args)]
-pub struct TableInspectArgs {
-    /// The table's file.
-    pub table: PathBuf,
-    /// Write the rows as CSV.
-    #[arg(long, value_name = "CSV")]
-    pub export: Option<PathBuf>,
-}
-
-/// Arguments of `table query`.
-#[derive(Debug, Args)]
-#[command(after_help = "Example:\n  \
-    roadwatch table query front.rwtable --box 470,260,560,330 --distance-m 18.5")]
-pub struct TableQueryArgs {
-    /// The table's file.
-    pub table: PathBuf,
-    /// The box, `x_min,y_min,x_max,y_max` in pixels.
-    #[arg(
-        long = "box",
-        value_name = "X,Y,X,Y",
-        value_delimiter = ',',
-        num_args = 1,
-        required = true
-    )]
-    pub box_px: Vec<f32>,
-    /// Expected distance (eq. 2), metres.
-    #[arg(long, value_name = "M")]
-    pub distance_m: f32,
-    /// Weight of the distance in the score, pixels per metre of this table's images.
-    #[arg(long, value_name = "PX_PER_M")]
-    pub weight: Option<f32>,
 }
 
 /// What to do with models.

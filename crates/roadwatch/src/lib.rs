@@ -5,6 +5,7 @@ pub mod clock;
 pub mod commands;
 pub mod config;
 pub mod failure;
+pub mod models;
 pub mod open;
 pub mod session;
 pub mod status;

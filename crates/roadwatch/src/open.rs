@@ -2,10 +2,10 @@
 
 use crate::config::{CameraConfig, Config, Notes, RigConfig, SourceConfig};
 use roadwatch_camera::{
-    DecodeCount, ImageSequence, Playback, PlaybackOptions, Player, Recording, RigDataset, Span,
-    VideoFile,
+    AnyRecording, DecodeCount, ImageSequence, Playback, PlaybackOptions, Player, Recording,
+    RigDataset, Span, VideoFile,
 };
-use roadwatch_core::{CameraId, FrameSource, Locator, Rig, RigCamera, Timestamp, error_chain};
+use roadwatch_core::{FrameSource, Locator, Rig, RigCamera, Timestamp, error_chain};
 use roadwatch_detect::{DetectorError, NetworkError, Runtime, YoloDetector};
 use std::sync::Arc;
 
@@ -81,29 +81,6 @@ pub fn locators(config: &Config, notes: &mut Notes) -> Option<Vec<Box<dyn Locato
     built.into_iter().collect()
 }
 
-/// A recording of any kind, opened, not yet playing.
-enum Opened {
-    Images(ImageSequence),
-    Video(VideoFile),
-}
-
-impl Opened {
-    fn span(&self) -> Span {
-        match self {
-            Self::Images(images) => images.span(),
-            Self::Video(video) => video.span(),
-        }
-    }
-
-    fn play(self, camera: CameraId, playback: &Arc<Playback>) -> Box<dyn FrameSource> {
-        let playback = Arc::clone(playback);
-        match self {
-            Self::Images(images) => Box::new(Player::new(camera, images, playback)),
-            Self::Video(video) => Box::new(Player::new(camera, video, playback)),
-        }
-    }
-}
-
 /// Opens what feeds each camera, or notes why not. `decodes` counts the images that are decoded.
 pub fn sources(
     config: &Config,
@@ -117,7 +94,7 @@ pub fn sources(
         dataset,
     } = config.rig.as_ref()?;
     let start = default_start(cameras, dataset.as_deref());
-    let opened: Vec<Option<Opened>> = rig
+    let opened: Vec<Option<AnyRecording>> = rig
         .cameras()
         .iter()
         .zip(cameras)
@@ -131,16 +108,14 @@ pub fn sources(
             }
         })
         .collect();
-    let opened: Vec<Opened> = opened.into_iter().collect::<Option<_>>()?;
-    let spans: Vec<_> = opened.iter().map(Opened::span).collect();
+    let opened: Vec<AnyRecording> = opened.into_iter().collect::<Option<_>>()?;
+    let spans: Vec<_> = opened.iter().map(Recording::span).collect();
     note_lonely(cameras, &spans, notes);
     let playback = Playback::new(playback, &spans);
-    let players = rig.ids().zip(opened);
-    Some(
-        players
-            .map(|(camera, opened)| opened.play(camera, &playback))
-            .collect(),
-    )
+    let players = rig.ids().zip(opened).map(|(camera, recording)| {
+        Box::new(Player::new(camera, recording, Arc::clone(&playback))) as Box<dyn FrameSource>
+    });
+    Some(players.collect())
 }
 
 /// Where recordings without a start stamp begin: with the dataset, or with the earliest that has one.
@@ -187,28 +162,25 @@ fn open_source(
     config: &CameraConfig,
     dataset: Option<&RigDataset>,
     (default_start, decodes): (Timestamp, &DecodeCount),
-) -> Result<Opened, (&'static str, String)> {
+) -> Result<AnyRecording, (&'static str, String)> {
     let size = camera.model.size;
     match &config.source {
         SourceConfig::Dataset(index) => dataset
             .and_then(|dataset| dataset.recording(*index))
-            .map(|images| Opened::Images(images.counting(decodes.clone())))
-            .ok_or_else(|| {
-                (
-                    "dataset",
-                    "the dataset has no images of this camera".to_owned(),
-                )
-            }),
+            .ok_or_else(|| "the dataset has no images of this camera".to_owned())
+            .and_then(|opened| opened.map_err(|error| error_chain(&error)))
+            .map(|recording| recording.counting(decodes.clone()))
+            .map_err(|what| ("dataset", what)),
         SourceConfig::Images {
             folder,
             rate,
             start,
         } => ImageSequence::open(folder, size, *rate, start.unwrap_or(default_start))
-            .map(|images| Opened::Images(images.counting(decodes.clone())))
+            .map(|images| AnyRecording::Images(images.counting(decodes.clone())))
             .map_err(|error| ("images", error_chain(&error))),
         SourceConfig::Video { file, start } => {
             VideoFile::open(file, size, start.unwrap_or(default_start))
-                .map(Opened::Video)
+                .map(AnyRecording::Video)
                 .map_err(|error| ("video", error_chain(&error)))
         }
     }

@@ -6,7 +6,7 @@ use cargo_metadata::{DependencyKind, MetadataCommand};
 use std::collections::BTreeMap;
 
 /// Each crate with the crates of this workspace it may depend on.
-const ARROWS: [(&str, &[&str]); 9] = [
+const ARROWS: [(&str, &[&str]); 10] = [
     ("roadwatch-core", &[]),
     ("roadwatch-pipeline", &["roadwatch-core"]),
     ("roadwatch-camera", &["roadwatch-core"]),
@@ -14,6 +14,7 @@ const ARROWS: [(&str, &[&str]); 9] = [
     ("roadwatch-locate", &["roadwatch-core"]),
     ("roadwatch-reid", &["roadwatch-core"]),
     ("roadwatch-ros", &["roadwatch-core"]),
+    ("roadwatch-picture", &["roadwatch-core"]),
     (
         "roadwatch-lab",
         &[
@@ -35,6 +36,7 @@ const ARROWS: [(&str, &[&str]); 9] = [
             "roadwatch-locate",
             "roadwatch-reid",
             "roadwatch-ros",
+            "roadwatch-picture",
             "roadwatch-lab",
         ],
     ),

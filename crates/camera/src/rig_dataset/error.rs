@@ -1,6 +1,6 @@
 //! What can be wrong with a rig dataset, said with file and line.
 
-use crate::image_sequence::SequenceError;
+use crate::{image_sequence::SequenceError, video_file::VideoError};
 use roadwatch_core::{
     CameraName, Timestamp, distortion::UnknownDistortion, name::InvalidName,
     time::ParseTimestampError,
@@ -41,8 +41,8 @@ pub enum DatasetError {
         /// What is wrong there.
         problem: FramesProblem,
     },
-    /// A camera of the rig has no folder.
-    #[error("camera `{camera}` has no folder of images: `{}` is missing", folder.display())]
+    /// A camera of the rig has neither a folder nor a clip.
+    #[error("camera `{camera}` has no images: neither the folder `{0}` nor the clip `{0}.mp4` is there", folder.display())]
     NoFolder {
         /// The camera.
         camera: CameraName,
@@ -67,6 +67,14 @@ pub enum DatasetError {
         camera: CameraName,
         /// Why.
         source: SequenceError,
+    },
+    /// A camera's clip cannot be played.
+    #[error("camera `{camera}`")]
+    Clip {
+        /// The camera.
+        camera: CameraName,
+        /// Why.
+        source: VideoError,
     },
 }
 

@@ -113,3 +113,10 @@ pub(crate) fn rig_dataset(root: &Path) -> PathBuf {
     fs::write(folder.join("frames.jsonl"), lines.collect::<String>()).expect("written");
     folder
 }
+
+/// Puts a clip of `frames` frames in the place of a camera's images.
+pub(crate) fn clip_instead_of_images(dataset: &Path, camera: &str, frames: usize) {
+    fs::remove_dir_all(dataset.join(camera)).expect("removed");
+    let file = dataset.join(format!("{camera}.mp4"));
+    video(&file, ['m', 'p', '4', 'v'], frames);
+}

@@ -1,11 +1,11 @@
 //! Tables from a camera's calibration, without images: silhouettes over a ground grid and headings.
 
 use super::{
-    CalibrationHash, ExpectedDistance, Grid, InvalidTable, LocationTable, SizeGroup, TableHeader,
-    TableRow, expected::terms, row_of,
+    CalibrationHash, Grid, InvalidTable, LocationTable, SizeGroup, TableHeader, TableRow,
+    distance_fit::DistanceFit, expected::terms, row_of,
 };
 use crate::hull::{GroundPose, HullSpec, SilhouetteCamera};
-use nalgebra::{Matrix4, Vector3, Vector4};
+use nalgebra::Vector3;
 use roadwatch_core::{BoxPx, RigCamera, rig::LooksVertical, space::Point};
 use std::f64::consts::PI;
 
@@ -67,7 +67,7 @@ impl GridSpec {
     /// Most rows a table may have; a hundred times what the default has, 280 MB.
     const MAX_ROWS: f64 = 1e7;
 
-    fn check(&self) -> Result<(), InvalidGrid> {
+    pub(super) fn check(&self) -> Result<(), InvalidGrid> {
         let numbers = [self.step_m, self.nearest_m, self.farthest_m, self.lateral_m];
         if !numbers.iter().all(|number| number.is_finite()) {
             return Err(InvalidGrid(
@@ -103,8 +103,18 @@ impl GridSpec {
         ((self.farthest_m - self.nearest_m) / self.step_m).floor() as u32 + 1
     }
 
+    /// The cell nearest to a place, as a row's `Loc`; `None` off the grid.
+    pub(super) fn cell(&self, loc_x_m: f64, loc_y_m: f64) -> Option<u32> {
+        let column = (loc_x_m / self.step_m).round() + f64::from(self.side_columns());
+        let along = ((loc_y_m - self.nearest_m) / self.step_m).round();
+        let columns = 2 * self.side_columns() + 1;
+        let inside = (0.0..f64::from(columns)).contains(&column)
+            && (0.0..f64::from(self.rows())).contains(&along);
+        inside.then(|| along as u32 * columns + column as u32)
+    }
+
     /// Column `side_columns` has LocX = 0, so that a mirrored camera has the mirrored table.
-    fn grid(&self) -> Grid {
+    pub(super) fn grid(&self) -> Grid {
         Grid {
             origin_loc_x_m: (-f64::from(self.side_columns()) * self.step_m) as f32,
             origin_loc_y_m: self.nearest_m as f32,
@@ -207,38 +217,5 @@ impl Caster<'_> {
         let whole = self.camera.silhouette_px(&self.hull_points, pose)?;
         let (clipped, share) = self.camera.clip(whole)?;
         (share >= self.spec.visible_share).then_some((clipped, clipped == whole))
-    }
-}
-
-/// Least squares of [`ExpectedDistance`] over the boxes of a table.
-#[derive(Default)]
-struct DistanceFit {
-    normal: Matrix4<f64>,
-    moments: Vector4<f64>,
-    boxes: u32,
-}
-
-impl DistanceFit {
-    /// Fewer boxes than this say too little; eq. 2 stays as printed.
-    const MIN_BOXES: u32 = 8;
-
-    /// Cells at a range are as many as the range is long, so each weighs by the inverse of its depth.
-    fn add(&mut self, terms: Vector4<f64>, depth_m: f64) {
-        self.normal += terms * terms.transpose() / depth_m;
-        self.moments += terms;
-        self.boxes += 1;
-    }
-
-    fn solve(&self, height_m: f64) -> ExpectedDistance {
-        let solved = self
-            .normal
-            .try_inverse()
-            .map(|inverse| inverse * self.moments);
-        match solved {
-            Some(fit) if self.boxes >= Self::MIN_BOXES && fit.x > 0.0 => {
-                ExpectedDistance::from_numbers(fit)
-            }
-            _ => ExpectedDistance::literal(height_m),
-        }
     }
 }

@@ -7,4 +7,5 @@ pub mod models;
 mod output;
 mod progress;
 pub mod run;
+mod scoring;
 pub mod table;

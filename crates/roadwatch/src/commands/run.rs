@@ -1,6 +1,6 @@
 //! `roadwatch run`.
 
-use super::output::say;
+use super::{output::say, scoring::Scoring};
 use crate::{
     cli::{Pace, RunArgs},
     clock::wall_time,
@@ -10,6 +10,7 @@ use crate::{
 };
 use anyhow::{Context as _, anyhow};
 use roadwatch_camera::{Pace as PlaybackPace, PlaybackOptions, Repeat, Speed};
+use roadwatch_picture::PictureSink;
 use roadwatch_pipeline::{Metrics, NamedSink, Overload, PipelineOptions};
 use roadwatch_ros::{BagSink, LogTime, RosSink};
 use signal_hook::{
@@ -26,6 +27,8 @@ use std::{
 
 /// The recording's name among the sinks.
 const BAG: &str = "bag";
+/// The drawer's name among the sinks.
+const PICTURES: &str = "pictures";
 /// One status line per second.
 const STATUS_PERIOD: Duration = Duration::from_secs(1);
 
@@ -36,7 +39,14 @@ const STATUS_PERIOD: Duration = Duration::from_secs(1);
 pub fn run(args: &RunArgs) -> Result<(), Failure> {
     let stop = stop_on_signals()?;
     let session = Session::open(&args.config, args.dataset.clone(), playback(args)?)?;
-    let sinks = sinks(args, &session)?;
+    let mut sinks = sinks(args, &session)?;
+    let scoring = if args.score {
+        let scoring = Scoring::prepare(&session)?;
+        sinks.push(scoring.sink());
+        Some(scoring)
+    } else {
+        None
+    };
     let options = PipelineOptions {
         scene_timeout: session.config.scene_timeout,
         ..PipelineOptions::new(overload(args.pace))
@@ -56,6 +66,9 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     )?;
     let took = began.elapsed();
     eprintln!("{}", status::summary(&rig, running.metrics(), took));
+    if let Some(scoring) = scoring {
+        eprintln!("{}", scoring.report(args.frames).summary());
+    }
     if args.json {
         say!(
             "{:#}",
@@ -132,6 +145,15 @@ fn sinks(args: &RunArgs, session: &Session) -> Result<Vec<NamedSink>, Failure> {
         let sink = bag.context("nothing can be recorded")?;
         sinks.push(NamedSink {
             name: BAG.to_owned(),
+            sink: Box::new(sink),
+        });
+    }
+    if let Some(folder) = &args.pictures {
+        let sink = PictureSink::create(folder, Arc::clone(&session.rig));
+        let sink =
+            sink.with_context(|| format!("no pictures can be put into `{}`", folder.display()))?;
+        sinks.push(NamedSink {
+            name: PICTURES.to_owned(),
             sink: Box::new(sink),
         });
     }

@@ -8,6 +8,7 @@ use crate::{
 use anyhow::{Context as _, anyhow};
 use roadwatch_camera::read_rig_file;
 use roadwatch_core::{BoxPx, ObjectClass, RigCamera, SizeLwh};
+use roadwatch_lab::{LabelledTableSpec, Truth, TruthFilter, table_from_labels};
 use roadwatch_locate::{
     ClassSizes, GridSpec, HullSpec, LocationTable, SizeGroup, TableIndex, TableQuery, Weight,
     build_table,
@@ -18,12 +19,21 @@ use std::{path::Path, sync::Arc};
 /// The builder tells a share, not a count.
 const PROGRESS_STEPS: u64 = 1000;
 
-/// Builds a table from a camera's calibration, or from a CSV.
+/// A rig dataset has its rig in this file.
+const RIG_FILE: &str = "rig.toml";
+
+/// Builds a table from a camera's calibration, from labelled images, or from a CSV.
 ///
 /// # Errors
-/// When the rig, the camera, the class or the grid will not do, or the file cannot be written.
+/// When the rig, the camera, the class, the labels or the grid will not do, or the file cannot be written.
 pub fn build(args: &TableBuildArgs) -> Result<(), Failure> {
-    let camera = find_camera(&args.rig, &args.camera)?;
+    let dataset = args.from_dataset.as_deref();
+    let rig = dataset.map(|folder| folder.join(RIG_FILE));
+    let rig = rig.as_ref().or(args.rig.as_ref());
+    let camera = find_camera(
+        rig.context("--rig or --from-dataset is missing")?,
+        &args.camera,
+    )?;
     let class = ObjectClass::new(&args.class);
     let sizes = ClassSizes::default();
     let known = sizes
@@ -39,8 +49,9 @@ pub fn build(args: &TableBuildArgs) -> Result<(), Failure> {
         classes: vec![class.clone()],
         size,
     };
-    let table = match &args.import {
-        Some(csv) => {
+    let table = match (dataset, &args.import) {
+        (Some(folder), _) => label(args, &camera, group, folder)?,
+        (None, Some(csv)) => {
             let origin = CsvOrigin {
                 camera: &camera,
                 ground_z_m: args.ground_z_m,
@@ -48,7 +59,7 @@ pub fn build(args: &TableBuildArgs) -> Result<(), Failure> {
             };
             LocationTable::read_csv(csv, origin).with_context(|| csv.display().to_string())?
         }
-        None => project(args, &camera, group, &HullSpec::for_class(&class))?,
+        (None, None) => project(args, &camera, group, &HullSpec::for_class(&class))?,
     };
     table.write(&args.out).map_err(anyhow::Error::from)?;
     say!(
@@ -84,20 +95,57 @@ fn project(
     group: SizeGroup,
     hull: &HullSpec,
 ) -> Result<LocationTable, anyhow::Error> {
-    let defaults = GridSpec::default();
-    let grid = GridSpec {
-        step_m: args.step_m.unwrap_or(defaults.step_m),
-        farthest_m: args.farthest_m.unwrap_or(defaults.farthest_m),
-        lateral_m: args.lateral_m.unwrap_or(defaults.lateral_m),
-        headings: args.headings.unwrap_or(defaults.headings),
-        ..defaults
-    };
+    let grid = grid(args);
     let mut progress = Progress::new(PROGRESS_STEPS, "per mille");
     let table = build_table(camera, args.ground_z_m, &grid, (group, hull), |share| {
         progress.set((f64::from(share) * PROGRESS_STEPS as f64) as u64);
     })?;
     progress.finish();
     Ok(table)
+}
+
+/// Makes a table of a dataset's labels, and says how many it used.
+fn label(
+    args: &TableBuildArgs,
+    camera: &RigCamera,
+    group: SizeGroup,
+    folder: &Path,
+) -> Result<LocationTable, anyhow::Error> {
+    let truth = Truth::read(folder)?;
+    let filter = TruthFilter {
+        min_height_px: args.labels.min_height_px,
+        max_occluded: args.labels.max_occluded,
+        max_truncated: args.labels.max_truncated,
+        classes: group.classes.iter().map(ToString::to_string).collect(),
+    };
+    let spec = LabelledTableSpec {
+        camera,
+        ground_z_m: args.ground_z_m,
+        filter: &filter,
+        size: group.size,
+        grid: &grid(args),
+    };
+    let source = folder.display().to_string();
+    let (table, counts) =
+        table_from_labels(&spec, &truth, &source).with_context(|| source.clone())?;
+    eprintln!("{source}: {counts}");
+    if counts.silhouettes == 0 {
+        eprintln!(
+            "the labels have no `silhouette_px`: rows are of cuboids, which are higher than what detectors see"
+        );
+    }
+    Ok(table)
+}
+
+fn grid(args: &TableBuildArgs) -> GridSpec {
+    let defaults = GridSpec::default();
+    GridSpec {
+        step_m: args.step_m.unwrap_or(defaults.step_m),
+        farthest_m: args.farthest_m.unwrap_or(defaults.farthest_m),
+        lateral_m: args.lateral_m.unwrap_or(defaults.lateral_m),
+        headings: args.headings.unwrap_or(defaults.headings),
+        ..defaults
+    }
 }
 
 /// Prints what a table is of.

@@ -1,0 +1,138 @@
+"""The colour pass: the picture itself, smoothed, from surfaces, sky and contact shadows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import moderngl
+import numpy as np
+
+from ..model import Camera, Surface
+from .buffers import FORMAT_FULL
+from .context import build_program, set_uniforms
+from .drawlist import Drawable
+from .lighting import Lighting
+from .noise import NOISE_SIZE_PX, noise_pixels
+from .projection import clip_from_camera, matrix_bytes
+from .shadows import ShadowMaps
+
+SAMPLES = 4
+PRE=True
+NOISE_UNIT, SHADOW_UNIT, MATERIAL_UNIT = 0, 1, 2
+# Matt by nature: mirrored surroundings would not show on them.
+MATT = (Surface.GRASS, Surface.PLASTER, Surface.BRICK, Surface.FOLIAGE, Surface.CLOTH)
+GROUND = (Surface.ASPHALT, Surface.PAVING, Surface.PLAIN)
+# Cuboids at least this long are vehicles with wheel arches and a floor, which get little light.
+VEHICLE_LENGTH_M = 2.5
+
+
+class ColourPass:
+    """Draws what the camera would see, before its lens and sensor."""
+
+    def __init__(self, context: moderngl.Context, width_px: int, height_px: int) -> None:
+        self._context = context
+        self._size = (width_px, height_px)
+        self._smooth = context.framebuffer(
+            [context.renderbuffer(self._size, 4, samples=SAMPLES)],
+            context.depth_renderbuffer(self._size, samples=SAMPLES),
+        )
+        self._plain = context.framebuffer([context.renderbuffer(self._size, 4)])
+        self._noise = context.texture((NOISE_SIZE_PX, NOISE_SIZE_PX), 4, noise_pixels())
+        self._noise.build_mipmaps()
+        self._noise.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+        self._sky = build_program(context, "sky.vert", "sky.frag")
+        corners = context.buffer(np.array([-1, -1, 3, -1, -1, 3], dtype="<f4").tobytes())
+        self._sky_array = context.vertex_array(self._sky, [(corners, "2f", "in_corner")])
+        self._pre = build_program(context, 'shape.vert', 'shadow.frag', (('MASK', 1), ('CUTOUT', 0)))
+        self._programs: dict[tuple[tuple[str, int], ...], moderngl.Program] = {}
+
+    def draw(
+        self,
+        items: Sequence[Drawable],
+        camera: Camera,
+        clip_from_world: np.ndarray,
+        lighting: Lighting,
+        shadows: ShadowMaps,
+    ) -> np.ndarray:
+        """The picture, uint8 BGR (h, w, 3)."""
+        self._smooth.use()
+        self._smooth.clear()
+        self._context.enable_only(moderngl.DEPTH_TEST)
+        self._context.depth_func = "<="
+        self._noise.use(NOISE_UNIT)
+        shadows.texture.use(SHADOW_UNIT)
+        shared = self._shared_uniforms(camera, lighting, shadows)
+        prepared: set[int] = set()
+        if PRE:
+            self._smooth.color_mask=(False,)*4
+            for item in items:
+                for run in item.buffers.ranges:
+                    if run.surface is Surface.FOLIAGE: continue
+                    self._pre["clip_from_model"].write(matrix_bytes(clip_from_world @ np.asarray(item.instance.world_from_model, dtype=float)))
+                    item.buffers.array(self._context, self._pre, '3f 16x').render(vertices=run.count, first=run.first)
+            self._smooth.color_mask=(True,)*4
+        for item in items:
+            self._draw_item(item, clip_from_world, lighting, shared, prepared)
+        self._draw_sky(camera, lighting)
+        self._context.copy_framebuffer(self._plain, self._smooth)
+        width, height = self._size
+        raw = np.frombuffer(self._plain.read(components=4, alignment=1), dtype=np.uint8)
+        return np.ascontiguousarray(raw.reshape(height, width, 4)[:, :, 2::-1])
+
+    def _shared_uniforms(self, camera: Camera, lighting: Lighting, shadows: ShadowMaps) -> dict[str, object]:
+        return {
+            **lighting.uniforms,
+            **shadows.uniforms(),
+            "eye": tuple(camera.world_from_camera[:3, 3]),
+            "pixel_angle": 1.0 / camera.fx,
+            "noise": NOISE_UNIT,
+            "shadow_map": SHADOW_UNIT,
+            "materials": MATERIAL_UNIT,
+        }
+
+    def _program(self, surface: Surface, lighting: Lighting) -> moderngl.Program:
+        wet = surface in GROUND and float(lighting.uniforms["wetness"]) > 0.0
+        defines = (
+            ("SURFACE", int(surface)),
+            ("SUNNY", int(lighting.is_sunny)),
+            ("WET", int(wet)),
+            ("GLOSSY", int(wet or surface not in MATT)),
+        )
+        if defines not in self._programs:
+            self._programs[defines] = build_program(self._context, "surface.vert", "surface.frag", defines)
+        return self._programs[defines]
+
+    def _draw_item(
+        self,
+        item: Drawable,
+        clip_from_world: np.ndarray,
+        lighting: Lighting,
+        shared: dict[str, object],
+        prepared: set[int],
+    ) -> None:
+        pose = np.asarray(item.instance.world_from_model, dtype=float)
+        length, width, height = item.instance.model.size_lwh_m
+        is_vehicle = item.instance.object_id > 0 and length > VEHICLE_LENGTH_M
+        own = {
+            "clip_from_model": matrix_bytes(clip_from_world @ pose),
+            "world_from_model": matrix_bytes(pose),
+            "foot_z": float(pose[2, 3]),
+            "body": (length / 2.0, width / 2.0, height) if is_vehicle else (0.0, 0.0, 0.0),
+        }
+        item.buffers.materials.use(MATERIAL_UNIT)
+        for run in item.buffers.ranges:
+            program = self._program(run.surface, lighting)
+            if program.glo not in prepared:
+                set_uniforms(program, shared)
+                prepared.add(program.glo)
+            set_uniforms(program, own)
+            array = item.buffers.array(self._context, program, FORMAT_FULL)
+            array.render(vertices=run.count, first=run.first)
+
+    def _draw_sky(self, camera: Camera, lighting: Lighting) -> None:
+        projection = clip_from_camera(camera)
+        camera_from_corner = np.linalg.inv(projection[np.ix_([0, 1, 3], [0, 1, 2])])
+        world_from_corner = camera.world_from_camera[:3, :3] @ camera_from_corner
+        set_uniforms(self._sky, {**lighting.uniforms, "noise": NOISE_UNIT})
+        self._sky["world_from_corner"].write(matrix_bytes(world_from_corner))
+        self._sky_array.render()

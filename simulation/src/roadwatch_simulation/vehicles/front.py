@@ -1,0 +1,116 @@
+"""The face of a car: headlamps, grille, intakes, fog lamps, badge and front plate."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from roadwatch_simulation.assembly import Assembly
+from roadwatch_simulation.materials import (
+    AMBER,
+    CHROME,
+    LAMP_CLEAR,
+    LAMP_LIT,
+    LAMP_SMOKED,
+    PIANO_BLACK,
+    PLASTIC,
+    SEAM,
+)
+from roadwatch_simulation.vehicles.drape import Drape
+from roadwatch_simulation.vehicles.lamps import Outline, corner_lamp
+from roadwatch_simulation.vehicles.look import Look
+from roadwatch_simulation.vehicles.plates import PlateStyle, add_plate
+from roadwatch_simulation.vehicles.shell import Frame, Shell
+
+LAMP_VIEW_DEG = 38.0
+"""Headlamps are drawn from this far round the corner, so that they show from the front and the side."""
+
+HEADLAMPS: tuple[Outline, ...] = (
+    ((0.0, -0.045, 0.045), (0.3, -0.075, 0.065), (0.7, -0.070, 0.085), (1.0, 0.02, 0.075)),
+    ((0.0, -0.020, 0.035), (0.4, -0.045, 0.050), (0.8, -0.020, 0.070), (1.0, 0.03, 0.055)),
+    ((0.0, -0.070, 0.060), (0.1, -0.080, 0.070), (0.85, -0.080, 0.070), (1.0, -0.06, 0.060)),
+    ((0.0, -0.060, 0.020), (0.4, -0.075, 0.055), (0.75, -0.060, 0.080), (1.0, 0.01, 0.095)),
+)
+
+
+def add_front(assembly: Assembly, frame: Frame, shell: Shell, look: Look, plates: PlateStyle) -> None:
+    """Adds everything that makes the front of a car look at you."""
+    ahead = Drape(shell.patch, 0.0)
+    lip = frame.roof(0.03)
+    bottom = frame.shape.clearance_m + 0.03
+    _add_headlamps(assembly, frame, shell, look, lip)
+    _add_grille(assembly, frame, ahead, look, lip, bottom)
+    _add_bumper(assembly, frame, ahead, look, bottom)
+    _add_front_plate(assembly, frame, ahead, plates, bottom + (lip - bottom) * 0.42)
+
+
+def _add_headlamps(assembly: Assembly, frame: Frame, shell: Shell, look: Look, lip: float) -> None:
+    corner = Drape(shell.patch, LAMP_VIEW_DEG)
+    height = lip - 0.115
+    half = frame.size[1] / 2
+    inner = (frame.x(0.0), half * 0.50, height - 0.01)
+    outer = (frame.x(0.085), half * 0.96, height + 0.035)
+    outline = [(at, low * look.lamp_height, high * look.lamp_height) for at, low, high in HEADLAMPS[look.lamp_style]]
+    inset = [(at, low * 0.62, high * 0.62) for at, low, high in outline]
+    smoked = look.lamp_style in (1, 3)
+    assembly.add_both_sides(
+        corner_lamp(corner, inner, outer, outline), LAMP_SMOKED if smoked else LAMP_CLEAR, "headlamp"
+    )
+    for span in ((0.10, 0.42), (0.48, 0.74)):
+        lens = corner_lamp(corner, inner, outer, inset, span, 0.008)
+        assembly.add_both_sides(lens, LAMP_LIT if smoked else LAMP_SMOKED, "headlamp")
+        if not smoked:
+            spot = [(at, low * 0.5, high * 0.5) for at, low, high in inset]
+            middle = (span[0] + span[1]) / 2
+            bulb = corner_lamp(corner, inner, outer, spot, (middle - 0.08, middle + 0.08), 0.011)
+            assembly.add_both_sides(bulb, LAMP_LIT, "headlamp")
+    assembly.add_both_sides(corner_lamp(corner, inner, outer, inset, (0.80, 0.93), 0.008), AMBER, "headlamp")
+
+
+def _add_grille(
+    assembly: Assembly, frame: Frame, ahead: Drape, look: Look, lip: float, bottom: float
+) -> None:
+    half = frame.size[1] / 2 * look.grille_width
+    tall = (0.15 if frame.shape.rugged else 0.10) * look.grille_height
+    top = lip - 0.055
+    narrow = (1.0, 0.82, 0.9, 0.7, 1.12)[look.grille_style]
+    across = np.linspace(-1.0, 1.0, 17)
+    lower = [(x * half * narrow, top - tall) for x in across]
+    upper = [(x * half, top - 0.02 * x * x) for x in across]
+    assembly.add(ahead.sheet(lower, upper, 4), PIANO_BLACK)
+    if look.chrome:
+        assembly.add(ahead.stroke(upper, 0.022, lift_m=0.010), CHROME)
+        assembly.add(ahead.stroke(lower, 0.014, lift_m=0.010), CHROME)
+    bars = (2, 3, 0, 1, 4)[look.grille_style]
+    for number in range(bars):
+        height = top - tall * (number + 1) / (bars + 1)
+        line = [(-half * 0.95, height), (half * 0.95, height)]
+        assembly.add(ahead.stroke(line, 0.011, lift_m=0.009), CHROME if look.chrome else PLASTIC)
+    badge = ahead.ellipse((0.0, top - min(tall * 0.45, 0.06)), (0.055, 0.045), 0.014)
+    assembly.add(badge, CHROME)
+    seam = [(x * frame.size[1] * 0.38, top + 0.03 - 0.02 * x * x) for x in across]
+    assembly.add(ahead.stroke(seam, 0.009), SEAM)
+
+
+def _add_bumper(assembly: Assembly, frame: Frame, ahead: Drape, look: Look, bottom: float) -> None:
+    half = frame.size[1] / 2
+    height = 0.13 if look.grille_style in (0, 3) else 0.09
+    across = np.linspace(-1.0, 1.0, 15)
+    lower = [(x * half * 0.62, bottom + 0.035) for x in across]
+    upper = [(x * half * 0.55, bottom + 0.035 + height) for x in across]
+    assembly.add(ahead.sheet(lower, upper, 3), PLASTIC)
+    lip = [(x * half * 0.80, bottom + 0.012) for x in across]
+    assembly.add(ahead.stroke(lip, 0.025, lift_m=0.012), PLASTIC)
+    pocket = ahead.rectangle((half * 0.66, half * 0.84), (bottom + 0.05, bottom + 0.17))
+    assembly.add_both_sides(pocket, PLASTIC)
+    fog = ahead.ellipse((half * 0.75, bottom + 0.11), (0.045, 0.040), 0.010)
+    assembly.add_both_sides(fog, LAMP_CLEAR)
+
+
+def _add_front_plate(
+    assembly: Assembly, frame: Frame, ahead: Drape, plates: PlateStyle, height: float
+) -> None:
+    placed, met = ahead.onto(
+        np.array([[y, height + z] for y in (-0.2, 0.0, 0.2) for z in (-plates.height / 2, plates.height / 2)])
+    )
+    x = float(placed[met, 0].max(initial=frame.x(0.0)))
+    add_plate(assembly, plates, (x, 0.0, height), "plate_front")

@@ -1,0 +1,1 @@
+"""Roadwatch's own networks: trained on simulated images only, exported for the daemon, and scored."""
