@@ -19,6 +19,15 @@ pub struct MethodUnderTest {
     pub locators: Result<Vec<Box<dyn Locator>>, String>,
 }
 
+/// What becomes of objects in images that were lost on the way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LostImages {
+    /// They count as not found.
+    Count,
+    /// They are not scored: a run in real time may drop frames.
+    Ignore,
+}
+
 /// What is evaluated.
 pub struct Evaluation<'a> {
     /// The rig, with the same cameras in the same order as the dataset.
@@ -29,6 +38,8 @@ pub struct Evaluation<'a> {
     pub truth: &'a Truth,
     /// Which objects are scored.
     pub filter: &'a TruthFilter,
+    /// What a lost image means.
+    pub lost_images: LostImages,
     /// Only the first frames of each camera were played; `None` when all were.
     pub frame_limit: Option<u64>,
 }
@@ -42,8 +53,7 @@ struct Pair<'a> {
     object: &'a TruthObject,
 }
 
-/// Matches everything recorded to the labels, and scores each method on the same matches. Objects in
-/// images that were lost on the way count as not found.
+/// Matches everything recorded to the labels, and scores each method on the same matches.
 #[must_use]
 pub fn evaluate(
     evaluation: &Evaluation<'_>,
@@ -59,12 +69,16 @@ pub fn evaluate(
     for (camera, captured_at, number) in evaluation.images() {
         let name = evaluation.rig.camera(camera).name.as_str();
         let objects = evaluation.truth.objects(number, name);
+        let found = by_moment.get(&(camera, captured_at));
         counts.images += 1;
+        if found.is_none() && evaluation.lost_images == LostImages::Ignore {
+            continue;
+        }
         counts.objects += objects
             .iter()
             .filter(|object| evaluation.filter.admits(object))
             .count();
-        let Some(frame) = by_moment.get(&(camera, captured_at)) else {
+        let Some(frame) = found else {
             continue;
         };
         let detections: Vec<&Detection> = frame.detections().collect();

@@ -10,7 +10,7 @@ pub mod report;
 pub mod score;
 pub mod truth;
 
-pub use evaluate::{Evaluation, MethodUnderTest, evaluate};
+pub use evaluate::{Evaluation, LostImages, MethodUnderTest, evaluate};
 pub use labelled_table::{LabelCounts, LabelledTableError, LabelledTableSpec, table_from_labels};
 pub use matching::TruthFilter;
 pub use recorder::{Recorded, Recorder};

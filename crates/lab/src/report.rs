@@ -60,7 +60,7 @@ impl MethodReport {
 pub struct Report {
     /// Images perceived.
     pub frames: usize,
-    /// Images of the dataset that were lost on the way; their objects count as not found.
+    /// Images of the dataset that were lost on the way.
     pub frames_missing: usize,
     /// Which objects were scored.
     pub filter: TruthFilter,
@@ -186,10 +186,11 @@ impl Report {
         let (filter, detection) = (&self.filter, &self.detection);
         let (distance, location) = (&self.published.distance, &self.published.location);
         format!(
-            "against the labels ({}; at least {} px high, at most {} hidden and {} outside the image):\n  \
+            "against the labels of {} images ({}; at least {} px high, at most {} hidden and {} outside the image):\n  \
              found {} of {} (recall {}), precision {}\n  \
              location error mean {} m, median {} m, 90 % below {} m; {} of the found are within 1.5 m\n  \
              distance error mean {} of the distance, bias {}",
+            self.frames,
             filter.classes.join(", "),
             filter.min_height_px,
             percent(Some(filter.max_occluded)),

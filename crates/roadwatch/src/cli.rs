@@ -1,7 +1,9 @@
 //! The command line.
 
+mod models;
 mod table;
 
+pub use models::{ModelsCommand, ModelsFetchArgs, ModelsListArgs, ModelsVerifyArgs};
 pub use table::{TableBuildArgs, TableCommand, TableInspectArgs, TableQueryArgs};
 
 use crate::{commands, failure::Failure};
@@ -41,7 +43,7 @@ pub enum Command {
     Table(TableCommand),
     /// Run the pipeline over a labelled dataset and score every method side by side.
     Evaluate(EvaluateArgs),
-    /// Detector models.
+    /// Detector models: list, fetch, verify.
     #[command(subcommand)]
     Models(ModelsCommand),
 }
@@ -64,11 +66,14 @@ pub enum Pace {
 
 /// Arguments of `run`.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  \
+#[command(
+    args_override_self = true,
+    after_help = "Examples:\n  \
     roadwatch run config/pandaset.toml\n  \
     roadwatch run config/pandaset.toml --pace lossless --bag out\n  \
     roadwatch run config/pandaset.toml --pace lossless --score --pictures pictures\n  \
-    roadwatch run config/pandaset.toml --loop --speed 2")]
+    roadwatch run config/pandaset.toml --loop --speed 2"
+)]
 pub struct RunArgs {
     /// The configuration file (TOML).
     pub config: PathBuf,
@@ -150,29 +155,6 @@ fn share(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "expected a share, 0 to 1".to_owned())
 }
 
-/// What to do with models.
-#[derive(Debug, Subcommand)]
-pub enum ModelsCommand {
-    /// Open a model and say its head, classes, provider and speed.
-    Verify(ModelsVerifyArgs),
-}
-
-/// Arguments of `models verify`.
-#[derive(Debug, Args)]
-pub struct ModelsVerifyArgs {
-    /// The ONNX file.
-    pub model: PathBuf,
-    /// Runs to time.
-    #[arg(long, default_value_t = 20)]
-    pub runs: u32,
-    /// Threads inside one run; 0 for all cores.
-    #[arg(long, default_value_t = 0)]
-    pub threads: usize,
-    /// Input size for models that leave theirs open, `WIDTHxHEIGHT`.
-    #[arg(long, value_name = "WxH")]
-    pub input_size: Option<String>,
-}
-
 /// Runs the command that the arguments name, and gives the process's exit code.
 pub fn main_with(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let cli = Cli::try_parse_from(arguments);
@@ -204,6 +186,8 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Table(TableCommand::Inspect(args)) => commands::table::inspect(&args),
         Command::Table(TableCommand::Query(args)) => commands::table::query(&args),
         Command::Evaluate(args) => commands::evaluate::run(&args),
+        Command::Models(ModelsCommand::List(args)) => commands::models::list(&args),
+        Command::Models(ModelsCommand::Fetch(args)) => commands::models::fetch(&args),
         Command::Models(ModelsCommand::Verify(args)) => commands::models::verify(&args),
     }
 }

@@ -6,7 +6,7 @@ use cargo_metadata::{DependencyKind, MetadataCommand};
 use std::collections::BTreeMap;
 
 /// Each crate with the crates of this workspace it may depend on.
-const ARROWS: [(&str, &[&str]); 10] = [
+const ARROWS: [(&str, &[&str]); 11] = [
     ("roadwatch-core", &[]),
     ("roadwatch-pipeline", &["roadwatch-core"]),
     ("roadwatch-camera", &["roadwatch-core"]),
@@ -38,6 +38,22 @@ const ARROWS: [(&str, &[&str]); 10] = [
             "roadwatch-ros",
             "roadwatch-picture",
             "roadwatch-lab",
+        ],
+    ),
+    // The simulated world may see everything; nothing depends on it.
+    (
+        "roadwatch-tests",
+        &[
+            "roadwatch-core",
+            "roadwatch-pipeline",
+            "roadwatch-camera",
+            "roadwatch-detect",
+            "roadwatch-locate",
+            "roadwatch-reid",
+            "roadwatch-ros",
+            "roadwatch-picture",
+            "roadwatch-lab",
+            "roadwatch",
         ],
     ),
 ];

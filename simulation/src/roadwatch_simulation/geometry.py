@@ -87,6 +87,8 @@ def shade_faces(
     crosses = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     areas = np.linalg.norm(crosses, axis=1)
     kept = areas > 2.0 * SMALLEST_AREA_M2
+    if not kept.any():
+        return Patch(np.zeros((0, 3, 3)), np.zeros((0, 3, 3))), origin[kept]
     welded = _weld(vertices)[triangles[kept]]
     normals = _corner_normals(welded, crosses[kept], smooth_below_deg)
     return Patch(corners[kept], normals), origin[kept]
@@ -108,13 +110,13 @@ def _corner_normals(triangles: np.ndarray, crosses: np.ndarray, smooth_below_deg
     sorted_vertex, sorted_face = corner_vertex[order], corner_face[order]
     start = np.searchsorted(sorted_vertex, corner_vertex, "left")
     end = np.searchsorted(sorted_vertex, corner_vertex, "right")
-    least_cosine = np.cos(np.radians(smooth_below_deg))
-    total = np.zeros((3 * count, 3))
-    for step in range(int((end - start).max(initial=0))):
-        at = start + step
-        face = sorted_face[np.where(at < end, at, 0)]
-        near = (at < end) & (np.einsum("ij,ij->i", units[face], units[corner_face]) > least_cosine)
-        total += np.where(near[:, None], crosses[face], 0.0)
+    shared = end - start
+    corner = np.repeat(np.arange(3 * count), shared)
+    first = np.cumsum(shared) - shared
+    face = sorted_face[start[corner] + np.arange(len(corner)) - first[corner]]
+    cosines = np.einsum("ij,ij->i", units[face], units[corner_face[corner]])
+    near = cosines > np.cos(np.radians(smooth_below_deg))
+    total = np.add.reduceat(np.where(near[:, None], crosses[face], 0.0), first, axis=0)
     flat = np.linalg.norm(total, axis=1, keepdims=True) < 1e-12
     return _unit(np.where(flat, units[corner_face], total)).reshape(count, 3, 3)
 

@@ -25,7 +25,7 @@ CAR_PAINTS: tuple[tuple[str, float, Colour], ...] = (
     ("orange", 0.01, (0.55, 0.16, 0.02)),
     ("yellow", 0.01, (0.62, 0.42, 0.03)),
 )
-"""Name, share of traffic and linear RGB; white, black, grey and silver are three cars in four, as on real roads."""
+"""Name, share of traffic and linear RGB: white, black, grey and silver are four cars in five, as on roads."""
 
 WORK_PAINTS: tuple[Colour, ...] = (
     (0.80, 0.80, 0.79),
@@ -56,6 +56,13 @@ CLOTHES: tuple[Colour, ...] = (
     (0.45, 0.16, 0.22),
     (0.12, 0.28, 0.42),
 )
+SHOES: tuple[Colour, ...] = (
+    (0.015, 0.014, 0.014),
+    (0.03, 0.025, 0.022),
+    (0.10, 0.055, 0.03),
+    (0.60, 0.60, 0.58),
+    (0.20, 0.20, 0.21),
+)
 SKIN: tuple[Colour, ...] = (
     (0.62, 0.42, 0.33),
     (0.52, 0.33, 0.24),
@@ -64,6 +71,8 @@ SKIN: tuple[Colour, ...] = (
     (0.13, 0.07, 0.04),
 )
 HAIR: tuple[Colour, ...] = (
+    (0.014, 0.011, 0.010),
+    (0.05, 0.028, 0.015),
     (0.012, 0.010, 0.009),
     (0.035, 0.020, 0.012),
     (0.09, 0.05, 0.025),
@@ -74,9 +83,10 @@ HAIR: tuple[Colour, ...] = (
 GLASS = Material("glass", (0.012, 0.014, 0.016), gloss=0.97, f0=0.06)
 PRIVACY_GLASS = Material("privacy glass", (0.004, 0.004, 0.005), gloss=0.97, f0=0.06)
 BEHIND_GLASS_DARK = Material("seat behind glass", (0.003, 0.003, 0.003), gloss=0.97, f0=0.05)
-BEHIND_GLASS_PALE = Material("cabin behind glass", (0.075, 0.075, 0.075), gloss=0.97, f0=0.06)
-BEHIND_GLASS_SKIN = Material("face behind glass", (0.16, 0.10, 0.075), gloss=0.95, f0=0.05)
-SEEN_THROUGH = Material("street seen through", (0.17, 0.185, 0.19), gloss=0.97, f0=0.06)
+BEHIND_GLASS_PALE = Material("cabin behind glass", (0.034, 0.034, 0.035), gloss=0.97, f0=0.06)
+BEHIND_GLASS_SKIN = Material("face behind glass", (0.070, 0.046, 0.036), gloss=0.97, f0=0.05)
+SEEN_THROUGH = Material("street seen through", (0.085, 0.092, 0.095), gloss=0.97, f0=0.06)
+PILLAR = Material("pillar", (0.006, 0.006, 0.007), gloss=0.6, f0=0.04)
 PLASTIC = Material("black plastic", (0.022, 0.022, 0.024), gloss=0.25, f0=0.03)
 PIANO_BLACK = Material("black gloss", (0.008, 0.008, 0.009), gloss=0.9, f0=0.05)
 SEAM = Material("gap", (0.004, 0.004, 0.004), gloss=0.0, f0=0.0)
@@ -84,14 +94,14 @@ UNDERBODY = Material("underbody", (0.006, 0.006, 0.006), gloss=0.0, f0=0.01)
 TYRE = Material("tyre", (0.020, 0.020, 0.021), gloss=0.08, f0=0.02)
 RIM = Material("alloy", (0.50, 0.51, 0.53), gloss=0.6, f0=0.40, metallic=0.6)
 DARK_RIM = Material("dark alloy", (0.04, 0.04, 0.043), gloss=0.7, f0=0.08)
-HUB_CAP = Material("hub cap", (0.36, 0.37, 0.38), gloss=0.4, f0=0.08)
+HUB_CAP = Material("hub cap", (0.26, 0.265, 0.275), gloss=0.4, f0=0.08)
 BRAKE = Material("brake", (0.05, 0.048, 0.045), gloss=0.2, f0=0.05)
 CHROME = Material("chrome", (0.55, 0.56, 0.58), gloss=0.92, f0=0.60, metallic=0.9)
 PLATE_WHITE = Material("white plate", (0.74, 0.74, 0.72), gloss=0.3, f0=0.03)
 PLATE_YELLOW = Material("yellow plate", (0.72, 0.52, 0.05), gloss=0.3, f0=0.03)
 PLATE_BAND = Material("plate band", (0.01, 0.05, 0.35), gloss=0.3, f0=0.03)
 PLATE_INK = Material("plate ink", (0.015, 0.015, 0.02), gloss=0.2, f0=0.02)
-LAMP_CLEAR = Material("lamp glass", (0.50, 0.53, 0.57), gloss=0.95, f0=0.14, metallic=0.2)
+LAMP_CLEAR = Material("lamp glass", (0.36, 0.38, 0.41), gloss=0.95, f0=0.14, metallic=0.2)
 LAMP_SMOKED = Material("lamp housing", (0.06, 0.065, 0.07), gloss=0.95, f0=0.10)
 LAMP_LIT = Material("headlamp", (0.95, 0.95, 0.90), gloss=0.95, f0=0.1, emission=0.6)
 TAIL_RED = Material("tail lamp", (0.34, 0.008, 0.010), gloss=0.95, f0=0.06)

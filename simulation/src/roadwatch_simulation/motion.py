@@ -15,7 +15,11 @@ STANDING_M_PER_S = 0.02
 
 @dataclass(frozen=True)
 class Waypoint:
-    """A place (m, world) at a time (s). Without `yaw_rad` the direction follows from the movement."""
+    """A place (m, world) at a time (s).
+
+    Without `yaw_rad` the direction follows from the movement. Given directions are joined as numbers: from
+    350 to 370 degrees is a turn by 20 to the left, from 350 to 10 one by 340 to the right.
+    """
 
     time_s: float
     x_m: float
@@ -65,7 +69,7 @@ class Path:
     def _yaw(self, time_s: float) -> float:
         if all(waypoint.yaw_rad is not None for waypoint in self.waypoints):
             times = [waypoint.time_s for waypoint in self.waypoints]
-            return float(np.interp(time_s, times, np.unwrap([waypoint.yaw_rad for waypoint in self.waypoints])))
+            return float(np.interp(time_s, times, [waypoint.yaw_rad for waypoint in self.waypoints]))
         velocity = self._velocity(time_s)
         if math.hypot(*velocity) > STANDING_M_PER_S:
             return math.atan2(velocity[1], velocity[0])

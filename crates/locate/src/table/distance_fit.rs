@@ -61,3 +61,52 @@ impl DistanceFit {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TRUE: [f64; 4] = [1.45, 0.01, 3.6, -0.45];
+
+    /// The fit to `count` boxes from 6 to 50 m whose aspect ratios lie between two, straight ahead, with
+    /// distances off by up to `off_m`.
+    fn fit(count: u32, aspects: (f64, f64), off_m: f64) -> DistanceFit {
+        let mut fit = DistanceFit::default();
+        for at in 0..count {
+            let share = f64::from(at) / f64::from(count);
+            let aspect = aspects.0 + (aspects.1 - aspects.0) * (share * 7.0).fract();
+            let focal_over_height = 4.0 + 30.0 * share;
+            let terms = Vector4::new(focal_over_height, focal_over_height * aspect, 1.0, aspect);
+            let sign = if at % 3 == 0 { 1.0 } else { -0.5 };
+            fit.add(terms, terms.dot(&Vector4::from(TRUE)) + off_m * sign);
+        }
+        fit
+    }
+
+    #[test]
+    fn boxes_of_every_kind_leave_nothing_open() {
+        let fit = fit(1000, (1.2, 3.4), 0.0);
+        let free = fit.solve(1.5).numbers();
+        let held = fit.solve_near_literal(1.5).numbers();
+        assert!((free - Vector4::from(TRUE)).norm() < 1e-6, "{free}");
+        assert!((held - free).norm() < 0.05, "{held}");
+    }
+
+    #[test]
+    fn boxes_of_one_kind_say_nothing_of_others() {
+        let fit = fit(30, (1.30, 1.31), 0.3);
+        let held = fit.solve_near_literal(1.5);
+        assert!(held.breadth_m.abs() < 1.5, "{held:?}");
+        assert!(held.breadth_height_m.abs() < 0.2, "{held:?}");
+        let terms = Vector4::new(20.0, 26.0, 1.0, 1.3);
+        let asked_m = held.numbers().dot(&terms);
+        let true_m = Vector4::from(TRUE).dot(&terms);
+        assert!((asked_m - true_m).abs() < 0.3, "{asked_m} {true_m}");
+    }
+
+    #[test]
+    fn a_handful_of_boxes_leaves_eq_2_as_it_is() {
+        let literal = ExpectedDistance::literal(1.5);
+        assert_eq!(fit(7, (1.2, 3.4), 0.0).solve_near_literal(1.5), literal);
+    }
+}

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 #[derive(Debug, Subcommand)]
 pub enum TableCommand {
     /// Build a camera's table from its calibration or from labelled images, or import a bare 7-column CSV.
-    Build(TableBuildArgs),
+    Build(Box<TableBuildArgs>),
     /// Say what a table is of, and optionally export its rows as CSV.
     Inspect(TableInspectArgs),
     /// Ask a table where a box is.

@@ -11,7 +11,8 @@ use anyhow::{Context as _, anyhow};
 use roadwatch_camera::{Pace, PlaybackOptions, Repeat, RigDataset};
 use roadwatch_core::Method;
 use roadwatch_lab::{
-    Evaluation, MethodUnderTest, Recorded, Recorder, Truth, TruthFilter, evaluate::evaluate,
+    Evaluation, LostImages, MethodUnderTest, Recorded, Recorder, Truth, TruthFilter,
+    evaluate::evaluate,
 };
 use roadwatch_pipeline::{NamedSink, Overload, PipelineOptions, Running};
 use std::{sync::Arc, time::Duration};
@@ -49,6 +50,7 @@ pub fn run(args: &EvaluateArgs) -> Result<(), Failure> {
         dataset: &dataset,
         truth: &truth,
         filter: &filter,
+        lost_images: LostImages::Count,
         frame_limit: args.frames,
     };
     let report = evaluate(&evaluation, &recorded, &methods(&config));

@@ -1,5 +1,11 @@
 //! `roadwatch models`.
 
+mod fetch;
+mod list;
+
+pub use fetch::fetch;
+pub use list::list;
+
 use super::output::say;
 use crate::{
     cli::ModelsVerifyArgs,
@@ -40,6 +46,21 @@ pub fn verify(args: &ModelsVerifyArgs) -> Result<(), Failure> {
     };
     let mut network =
         Network::open(&runtime, &args.model, &options).map_err(anyhow::Error::from)?;
+    say!("model     {}", args.model.display());
+    describe(&network)?;
+    say!("runtime   {}", runtime.library().display());
+    say!(
+        "provider  {}, {} threads",
+        network.provider(),
+        options.threads
+    );
+    let times = time_runs(&mut network, args.runs).context("the model opens but does not run")?;
+    say!("speed     {}", speed_text(times));
+    Ok(())
+}
+
+/// Prints what a model takes and gives.
+fn describe(network: &Network) -> Result<(), Failure> {
     let head = network.head();
     let batch = match network.batch() {
         Batch::Fixed(count) => format!("fixed at {count}"),
@@ -52,18 +73,9 @@ pub fn verify(args: &ModelsVerifyArgs) -> Result<(), Failure> {
         }
         None => "none in the file; set detector.class_names".to_owned(),
     };
-    say!("model     {}", args.model.display());
     say!("head      {}, {} boxes", head.family(), head.boxes());
     say!("classes   {}: {names}", head.classes());
     say!("input     {}, batch {batch}", network.input_size());
-    say!("runtime   {}", runtime.library().display());
-    say!(
-        "provider  {}, {} threads",
-        network.provider(),
-        options.threads
-    );
-    let times = time_runs(&mut network, args.runs).context("the model opens but does not run")?;
-    say!("speed     {}", speed_text(times));
     Ok(())
 }
 

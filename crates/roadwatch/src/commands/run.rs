@@ -10,7 +10,7 @@ use crate::{
 };
 use anyhow::{Context as _, anyhow};
 use roadwatch_camera::{Pace as PlaybackPace, PlaybackOptions, Repeat, Speed};
-use roadwatch_picture::PictureSink;
+use roadwatch_picture::{PictureSink, SCENE_FILE, VIEWS_FILE};
 use roadwatch_pipeline::{Metrics, NamedSink, Overload, PipelineOptions};
 use roadwatch_ros::{BagSink, LogTime, RosSink};
 use signal_hook::{
@@ -69,6 +69,7 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     if let Some(scoring) = scoring {
         eprintln!("{}", scoring.report(args.frames).summary());
     }
+    say_what_was_written(args);
     if args.json {
         say!(
             "{:#}",
@@ -76,6 +77,16 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
         );
     }
     recording_is_whole(running.metrics())
+}
+
+fn say_what_was_written(args: &RunArgs) {
+    if let Some(folder) = &args.pictures {
+        let folder = folder.display();
+        eprintln!("pictures: {folder}/{VIEWS_FILE}, {folder}/{SCENE_FILE}");
+    }
+    if let Some(folder) = &args.bag {
+        eprintln!("bag: {}", folder.display());
+    }
 }
 
 /// A run whose recording lost something is no success, whoever watched it.

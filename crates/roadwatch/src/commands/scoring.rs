@@ -4,7 +4,7 @@ use crate::{failure::Failure, session::Session};
 use anyhow::{Context as _, anyhow};
 use roadwatch_camera::RigDataset;
 use roadwatch_core::Rig;
-use roadwatch_lab::{Evaluation, Recorder, Report, Truth, TruthFilter, evaluate};
+use roadwatch_lab::{Evaluation, LostImages, Recorder, Report, Truth, TruthFilter, evaluate};
 use roadwatch_pipeline::NamedSink;
 use std::sync::Arc;
 
@@ -63,6 +63,7 @@ impl Scoring {
             dataset: &self.dataset,
             truth: &self.truth,
             filter: &filter,
+            lost_images: LostImages::Ignore,
             frame_limit,
         };
         evaluate(&evaluation, &self.recorder.take(), &[])

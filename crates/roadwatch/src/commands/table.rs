@@ -131,7 +131,7 @@ fn label(
     eprintln!("{source}: {counts}");
     if counts.silhouettes == 0 {
         eprintln!(
-            "the labels have no `silhouette_px`: rows are of cuboids, which are higher than what detectors see"
+            "the labels have no `silhouette_px`: rows are of cuboids, which are higher than what detectors see, and will place objects too far"
         );
     }
     Ok(table)

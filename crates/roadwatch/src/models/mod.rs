@@ -6,12 +6,14 @@ pub mod fetch_error;
 mod part;
 pub mod registry;
 mod response;
+mod state;
 mod transfer;
 
 pub use digest::Sha256;
 pub use fetch::{Arrival, Download, FetchOptions, Fetched, News, Proxy, fetch};
 pub use fetch_error::FetchError;
 pub use registry::{Checksum, Model, Origin, Registry};
+pub use state::State;
 
 use crate::config::Environment;
 use std::path::PathBuf;

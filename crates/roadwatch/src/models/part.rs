@@ -41,7 +41,7 @@ impl Part {
     /// # Errors
     /// When the folder cannot be made or written to, or another process has the part (`WouldBlock`).
     pub(super) fn open(whole_path: &Path) -> Result<Self, PartError> {
-        let path = with_suffix(whole_path, ".part");
+        let path = part_path(whole_path);
         let origin_path = with_suffix(whole_path, ".part.from");
         let folder = whole_path.parent().unwrap_or(Path::new("."));
         fs::create_dir_all(folder).map_err(at(folder))?;
@@ -123,6 +123,11 @@ impl Part {
         remove(&self.path)?;
         remove(&self.origin_path)
     }
+}
+
+/// The name of a file while it is on its way.
+pub(super) fn part_path(whole_path: &Path) -> PathBuf {
+    with_suffix(whole_path, ".part")
 }
 
 fn remove(path: &Path) -> Result<(), PartError> {

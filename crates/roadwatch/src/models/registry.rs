@@ -221,14 +221,6 @@ mod tests {
             "yolox_nano",
         ];
         assert_eq!(names, expected);
-        for model in registry.models() {
-            let published = matches!(model.origin, Origin::Url(_));
-            assert!(
-                !published || (model.checksum != Checksum::Unknown && model.size_bytes.is_some()),
-                "{} could be checked, and its entry does not say how",
-                model.name
-            );
-        }
     }
 
     #[test]

@@ -209,6 +209,7 @@ fn broke_off(error: &io::Error, bytes: u64, total: Option<u64>) -> String {
 
 fn agent(options: &FetchOptions) -> Agent {
     let proxy = match options.proxy {
+        // The library reads the environment here: its rules for exceptions are many.
         Proxy::AsUsual => ureq::Proxy::try_from_env(),
         Proxy::Never => None,
     };

@@ -30,6 +30,15 @@ class SurfaceRange:
     count: int
 
 
+@dataclass(frozen=True)
+class Lamp:
+    """Where a model's switched light comes from, in model axes: middle, mean normal, linear colour."""
+
+    center_m: np.ndarray
+    direction: np.ndarray
+    colour: tuple[float, float, float]
+
+
 @dataclass
 class ModelBuffers:
     """One model's arrays on the graphics side, with its vertex arrays by program."""
@@ -39,6 +48,7 @@ class ModelBuffers:
     indices: moderngl.Buffer
     materials: moderngl.Texture
     ranges: tuple[SurfaceRange, ...]
+    lamps: tuple[Lamp, ...]
     low_m: np.ndarray
     high_m: np.ndarray
     center_m: np.ndarray
@@ -94,11 +104,30 @@ def _packed_vertices(model: Model, order: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def _ranges(surfaces: np.ndarray) -> tuple[SurfaceRange, ...]:
+    """Runs of equal surface in sorted triangles."""
     ranges = []
     for surface in np.unique(surfaces):
         members = np.flatnonzero(surfaces == surface)
         ranges.append(SurfaceRange(Surface(int(surface)), int(members[0]) * 3, len(members) * 3))
     return tuple(ranges)
+
+
+def _lamps(model: Model) -> tuple[Lamp, ...]:
+    """The lamps of a vehicle: shining triangles by material, left and right apart."""
+    mesh = model.mesh
+    centers = mesh.positions.mean(axis=1)
+    lamps = []
+    for index, material in enumerate(model.materials):
+        if material.emission <= 0.0 or not is_switched(material.name):
+            continue
+        for side in (centers[:, 1] > 0.0, centers[:, 1] <= 0.0):
+            chosen = (mesh.materials == index) & side
+            normal = mesh.normals[chosen].reshape(-1, 3).sum(axis=0)
+            length = np.linalg.norm(normal)
+            if chosen.any() and length > 0.0:
+                center = centers[chosen].mean(axis=0).astype(float)
+                lamps.append(Lamp(center, normal.astype(float) / length, material.colour))
+    return tuple(lamps)
 
 
 def upload(context: moderngl.Context, model: Model) -> ModelBuffers:
@@ -119,6 +148,7 @@ def upload(context: moderngl.Context, model: Model) -> ModelBuffers:
         indices=context.buffer(indices.tobytes()),
         materials=materials,
         ranges=_ranges(surfaces[order]),
+        lamps=_lamps(model),
         low_m=low,
         high_m=high,
         center_m=center,

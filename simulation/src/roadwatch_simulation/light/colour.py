@@ -4,26 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import cv2
 import moderngl
 import numpy as np
 
 from ..model import Camera, Surface
 from .buffers import FORMAT_FULL
 from .context import build_program, set_uniforms
+from .decals import VEHICLE_LENGTH_M, DecalPass
 from .drawlist import Drawable
 from .lighting import Lighting
 from .noise import NOISE_SIZE_PX, noise_pixels
 from .projection import clip_from_camera, matrix_bytes
 from .shadows import ShadowMaps
 
-SAMPLES = 4
-PRE=True
+# The picture is drawn this many times wider and higher and averaged: Mesa's software driver takes more
+# time for multisampling than for all these pixels, and averaging also calms highlights.
+SUPERSAMPLING = 2
 NOISE_UNIT, SHADOW_UNIT, MATERIAL_UNIT = 0, 1, 2
 # Matt by nature: mirrored surroundings would not show on them.
 MATT = (Surface.GRASS, Surface.PLASTER, Surface.BRICK, Surface.FOLIAGE, Surface.CLOTH)
 GROUND = (Surface.ASPHALT, Surface.PAVING, Surface.PLAIN)
-# Cuboids at least this long are vehicles with wheel arches and a floor, which get little light.
-VEHICLE_LENGTH_M = 2.5
 
 
 class ColourPass:
@@ -32,18 +33,17 @@ class ColourPass:
     def __init__(self, context: moderngl.Context, width_px: int, height_px: int) -> None:
         self._context = context
         self._size = (width_px, height_px)
-        self._smooth = context.framebuffer(
-            [context.renderbuffer(self._size, 4, samples=SAMPLES)],
-            context.depth_renderbuffer(self._size, samples=SAMPLES),
+        self._drawn_size = (int(width_px * SUPERSAMPLING), int(height_px * SUPERSAMPLING))
+        self._target = context.framebuffer(
+            [context.renderbuffer(self._drawn_size, 4)], context.depth_renderbuffer(self._drawn_size)
         )
-        self._plain = context.framebuffer([context.renderbuffer(self._size, 4)])
         self._noise = context.texture((NOISE_SIZE_PX, NOISE_SIZE_PX), 4, noise_pixels())
         self._noise.build_mipmaps()
         self._noise.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+        self._decals = DecalPass(context)
         self._sky = build_program(context, "sky.vert", "sky.frag")
         corners = context.buffer(np.array([-1, -1, 3, -1, -1, 3], dtype="<f4").tobytes())
         self._sky_array = context.vertex_array(self._sky, [(corners, "2f", "in_corner")])
-        self._pre = build_program(context, 'shape.vert', 'shadow.frag', (('MASK', 1), ('CUTOUT', 0)))
         self._programs: dict[tuple[tuple[str, int], ...], moderngl.Program] = {}
 
     def draw(
@@ -55,43 +55,37 @@ class ColourPass:
         shadows: ShadowMaps,
     ) -> np.ndarray:
         """The picture, uint8 BGR (h, w, 3)."""
-        self._smooth.use()
-        self._smooth.clear()
+        self._target.use()
+        self._target.clear()
         self._context.enable_only(moderngl.DEPTH_TEST)
         self._context.depth_func = "<="
         self._noise.use(NOISE_UNIT)
         shadows.texture.use(SHADOW_UNIT)
         shared = self._shared_uniforms(camera, lighting, shadows)
         prepared: set[int] = set()
-        if PRE:
-            self._smooth.color_mask=(False,)*4
-            for item in items:
-                for run in item.buffers.ranges:
-                    if run.surface is Surface.FOLIAGE: continue
-                    self._pre["clip_from_model"].write(matrix_bytes(clip_from_world @ np.asarray(item.instance.world_from_model, dtype=float)))
-                    item.buffers.array(self._context, self._pre, '3f 16x').render(vertices=run.count, first=run.first)
-            self._smooth.color_mask=(True,)*4
         for item in items:
             self._draw_item(item, clip_from_world, lighting, shared, prepared)
+        self._decals.contacts(items, clip_from_world, lighting)
         self._draw_sky(camera, lighting)
-        self._context.copy_framebuffer(self._plain, self._smooth)
-        width, height = self._size
-        raw = np.frombuffer(self._plain.read(components=4, alignment=1), dtype=np.uint8)
-        return np.ascontiguousarray(raw.reshape(height, width, 4)[:, :, 2::-1])
+        self._decals.glows(items, camera, clip_from_world, lighting)
+        width, height = self._drawn_size
+        raw = np.frombuffer(self._target.read(components=4, alignment=1), dtype=np.uint8)
+        image = cv2.cvtColor(raw.reshape(height, width, 4), cv2.COLOR_RGBA2BGR)
+        return cv2.resize(image, self._size, interpolation=cv2.INTER_AREA)
 
     def _shared_uniforms(self, camera: Camera, lighting: Lighting, shadows: ShadowMaps) -> dict[str, object]:
         return {
             **lighting.uniforms,
             **shadows.uniforms(),
             "eye": tuple(camera.world_from_camera[:3, 3]),
-            "pixel_angle": 1.0 / camera.fx,
+            "pixel_angle": 1.0 / (camera.fx * SUPERSAMPLING),
             "noise": NOISE_UNIT,
             "shadow_map": SHADOW_UNIT,
             "materials": MATERIAL_UNIT,
         }
 
-    def _program(self, surface: Surface, lighting: Lighting) -> moderngl.Program:
-        wet = surface in GROUND and float(lighting.uniforms["wetness"]) > 0.0
+    def _program(self, surface: Surface, lighting: Lighting, is_scenery: bool) -> moderngl.Program:
+        wet = is_scenery and surface in GROUND and float(lighting.uniforms["wetness"]) > 0.0
         defines = (
             ("SURFACE", int(surface)),
             ("SUNNY", int(lighting.is_sunny)),
@@ -121,7 +115,7 @@ class ColourPass:
         }
         item.buffers.materials.use(MATERIAL_UNIT)
         for run in item.buffers.ranges:
-            program = self._program(run.surface, lighting)
+            program = self._program(run.surface, lighting, item.instance.object_id == 0)
             if program.glo not in prepared:
                 set_uniforms(program, shared)
                 prepared.add(program.glo)

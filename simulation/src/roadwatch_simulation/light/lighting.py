@@ -21,11 +21,15 @@ GROUND_ALBEDO = np.array([0.15, 0.145, 0.135])
 BAND_ALBEDO = np.array([0.16, 0.15, 0.135])
 # From this strength on the sun stands in a clear sky; below, clouds close over it.
 CLEAR_SUN = 1.4
+# A clear sky's light is raised by what bright walls and clouds throw back into the shade.
+AMBIENT_GAIN_CLEAR = 1.45
 # A noon street (sun 2.6, sky 1) is exposed so; darker scenes are brightened only in part, as a camera would.
 NOON_EXPOSURE = 0.60
 NOON_LUMINANCE = 2.2
 EXPOSURE_EXPONENT = 0.78
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+# Emission of lamps, which models give for a lamp looked at by day, when they are switched on at dusk.
+LAMP_GAIN = 3.0
 CLOUD_SEED = 77_003
 
 
@@ -38,18 +42,23 @@ class Lighting:
     uniforms: dict[str, object]
 
     @property
+    def lamps_on(self) -> bool:
+        """True when lamps of vehicles shine."""
+        return bool(self.uniforms["lamps"])
+
+    @property
     def is_sunny(self) -> bool:
         """True when the sun throws shadows."""
         return bool(self.sun_colour.max() > 0.0)
 
 
-def _mixed(first: np.ndarray, second: np.ndarray, share: float) -> np.ndarray:
+def _mixed(first, second, share: float):
     return first + (second - first) * share
 
 
 def _clouds(light: Light, grey: float) -> tuple[float, tuple[float, float]]:
     rng = np.random.default_rng([CLOUD_SEED, light.seed])
-    cover = _mixed(np.array(rng.uniform(0.10, 0.62)), np.array(1.05), grey)
+    cover = _mixed(np.array(rng.uniform(0.15, 0.75)), np.array(1.05), grey)
     offset = rng.uniform(0.0, 1.0, size=2)
     return float(cover), (float(offset[0]), float(offset[1]))
 
@@ -63,7 +72,7 @@ def lighting_of(light: Light) -> Lighting:
     sun = _mixed(SUN_NOON, SUN_DUSK, light.warmth) * light.sun * above
     zenith = _mixed(_mixed(ZENITH_NOON, ZENITH_DUSK, light.warmth), ZENITH_GREY, grey) * light.sky
     horizon = _mixed(_mixed(HORIZON_NOON, HORIZON_DUSK, light.warmth), HORIZON_GREY, grey) * light.sky
-    ambient = 0.62 * zenith + 0.38 * horizon
+    ambient = (0.60 * zenith + 0.40 * horizon) * _mixed(AMBIENT_GAIN_CLEAR, 1.0, grey)
     on_ground = ambient + sun * max(direction[2], 0.0)
     cover, offset = _clouds(light, grey)
     luminance = float(on_ground @ LUMINANCE) + 1e-3
@@ -82,6 +91,6 @@ def lighting_of(light: Light) -> Lighting:
         "exposure": NOON_EXPOSURE * (NOON_LUMINANCE / luminance) ** EXPOSURE_EXPONENT,
         "haze_per_m": light.haze_per_m,
         "wetness": light.wetness,
-        "lamps": 1.0 if light.headlights else 0.0,
+        "lamps": LAMP_GAIN if light.headlights else 0.0,
     }
     return Lighting(direction, sun, uniforms)

@@ -10,6 +10,7 @@ import numpy as np
 from ..motion import standing
 from ..scene import SceneObject
 from ..scenery import Footprint, Lane, Place
+from ..traffic import Look
 
 CLEARANCE_M = 0.25
 """Between the cuboids of any two things: mirrors stand out of them."""
@@ -18,14 +19,6 @@ VEHICLE_SHARES = {
     "van": 0.08, "truck": 0.05, "bus": 0.04,
 }  # fmt: skip
 LONG_KINDS = ("bus", "truck")
-
-
-@dataclass(frozen=True)
-class Look:
-    """One thing of the catalogue, without its place."""
-
-    kind: str
-    seed: int
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ def build_car_park(seed: int) -> Place:
     low, high = y_of[0] - 0.5 * pitch, y_of[-1] + 0.5 * pitch
     reach = half_length + AISLE_M + 1.0
     add_surroundings(site, max(120.0, 1.6 * reach))
-    site.builder.ground((-reach, reach), (low - 0.5, high + 0.5), 0.0, site.ground.road)
+    site.road((-reach, reach), (low - 0.5, high + 0.5))
     for y in y_of:
         _add_aisle(site, y, half_length, columns, reach, paint)
     for y in (*(y - 0.5 * pitch for y in y_of), y_of[-1] + 0.5 * pitch):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,22 +21,42 @@ CROSSING_M = 4.2
 """Length of an arm that the zebra crossing takes, before the stop line."""
 
 
+@dataclass(frozen=True)
+class JunctionPlan:
+    """The two roads of a junction, along x and along y, and its signals."""
+
+    along_x: Section
+    along_y: Section
+    has_signals: bool
+    green_along_x: bool
+
+
 def build_junction(seed: int) -> Place:
-    """A junction with signals, as the seed has it."""
+    """A junction, as the seed has it."""
     site = Site("junction", seed)
-    along_x = draw_section(site.rng)
-    along_y = replace(draw_section(site.rng), kerb_m=along_x.kerb_m, style=along_x.style)
+    plan = _draw_plan(site)
+    along_x, along_y = plan.along_x, plan.along_y
     add_surroundings(site, 150.0)
     _add_middle(site, along_x, along_y)
-    signals = site.rng.random() < 0.75
-    green_along_x = bool(site.rng.random() < 0.5)
     for arm in range(4):
         here, other = (along_x, along_y) if arm % 2 == 0 else (along_y, along_x)
         with site.builder.placed(0.0, 0.0, arm * math.pi / 2):
             _add_arm(site, here, other, owns_corner=arm % 2 == 0)
-            if signals:
-                _add_signals(site, here, other, 2 if (arm % 2 == 0) == green_along_x else 0)
+            if plan.has_signals:
+                _add_signals(site, here, other, 2 if (arm % 2 == 0) == plan.green_along_x else 0)
     return site.place()
+
+
+def junction_plan(seed: int) -> JunctionPlan:
+    """What the junction with that seed is like, without building it."""
+    return _draw_plan(Site("junction", seed))
+
+
+def _draw_plan(site: Site) -> JunctionPlan:
+    rng = site.rng
+    along_x = draw_section(rng)
+    along_y = replace(draw_section(rng), kerb_m=along_x.kerb_m, style=along_x.style)
+    return JunctionPlan(along_x, along_y, bool(rng.random() < 0.75), bool(rng.random() < 0.5))
 
 
 def _arm_start(other: Section) -> float:
@@ -48,6 +68,8 @@ def _add_arm(site: Site, here: Section, other: Section, *, owns_corner: bool) ->
     add_zebra(site, here, start + 0.5 * CROSSING_M - 0.3)
     span = (start, REACH_M)
     inner = (start + CROSSING_M, REACH_M)
+    half = here.kerb_line_m
+    site.builder.rectangles([[REACH_M, -half]], [[REACH_M + 220.0, half]], -0.01, site.ground.road)
     add_centre_line(site, here, inner)
     _fill_crossing(site, here, span)
     buildings_from = other.building_line_m + (0.5 if owns_corner else 16.0)
@@ -63,7 +85,7 @@ def _fill_crossing(site: Site, here: Section, span) -> None:
     """The arm's ground under its zebra crossing, with lowered kerbs."""
     end = span[0] + CROSSING_M
     half, edge = here.kerb_line_m, here.frontage_line_m
-    site.builder.ground((span[0], end), (-half, half), 0.0, site.ground.road)
+    site.road((span[0], end), (-half, half))
     for side in ((half, edge), (-edge, -half)):
         site.slab((span[0], end), side, here.kerb_m, site.ground.paving)
 
@@ -71,7 +93,7 @@ def _fill_crossing(site: Site, here: Section, span) -> None:
 def _add_middle(site: Site, along_x: Section, along_y: Section) -> None:
     """The crossing's own asphalt and the four rounded corners."""
     half_x, half_y = _arm_start(along_y), _arm_start(along_x)
-    site.builder.ground((-half_x, half_x), (-half_y, half_y), 0.0, site.ground.road)
+    site.road((-half_x, half_x), (-half_y, half_y))
     for sign_x, sign_y in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
         _add_corner(site, along_x, along_y, sign_x, sign_y)
 

@@ -96,6 +96,12 @@ class Layout:
     crossings: list[Lane] = field(default_factory=list)
     obstacles: list[Footprint] = field(default_factory=list)
     raised: list[Raised] = field(default_factory=list)
+    roads: list[tuple[float, float, float, float]] = field(default_factory=list)
+    """Rectangles of road: x_min, y_min, x_max, y_max (m, world)."""
+
+    def is_road(self, x_m: float, y_m: float) -> bool:
+        """Whether there is road at a place."""
+        return any(x0 <= x_m <= x1 and y0 <= y_m <= y1 for x0, y0, x1, y1 in self.roads)
 
     def height_m(self, x_m: float, y_m: float) -> float:
         """Height of the ground at a place."""

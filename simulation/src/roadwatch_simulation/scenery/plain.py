@@ -20,7 +20,7 @@ def build_plain(seed: int) -> Place:
     """A flat ground with marks every ten metres."""
     site = Site("plain", seed)
     add_surroundings(site, 140.0)
-    site.builder.ground((-HALF_M, HALF_M), (-HALF_M, HALF_M), 0.0, site.ground.road)
+    site.road((-HALF_M, HALF_M), (-HALF_M, HALF_M))
     ticks = np.arange(-HALF_M + LINE_GAP_M, HALF_M, LINE_GAP_M)
     for axis in (0, 1):
         half = np.array([0.5, 0.06]) if axis == 0 else np.array([0.06, 0.5])

@@ -93,7 +93,7 @@ def draw_section(rng: np.random.Generator, *, parking: bool = True) -> Section:
 def add_road_side(site: Site, section: Section, span: tuple[float, float], *, stop_line: bool) -> None:
     """Adds the surfaces and markings of one side of a road; with a stop line at the span's start if asked."""
     start, end = span
-    site.builder.ground(span, (0.0, section.kerb_line_m), 0.0, site.ground.road)
+    site.road(span, (0.0, section.kerb_line_m))
     _add_kerb_and_pavement(site, section, span)
     _add_lines(site, section, span)
     _add_lanes(site, section, span)

@@ -67,6 +67,13 @@ class Site:
         low, high = np.minimum(first, second), np.maximum(first, second)
         self.layout.raised.append(Raised((low[0], low[1], high[0], high[1]), height_m))
 
+    def road(self, x_m: tuple[float, float], y_m: tuple[float, float]) -> None:
+        """Asphalt at road level."""
+        self.builder.ground(x_m, y_m, 0.0, self.ground.road)
+        first, second = self.world(x_m[0], y_m[0]), self.world(x_m[1], y_m[1])
+        low, high = np.minimum(first, second), np.maximum(first, second)
+        self.layout.roads.append((float(low[0]), float(low[1]), float(high[0]), float(high[1])))
+
     def slab(self, x_m: tuple[float, float], y_m: tuple[float, float], height_m: float, material: Material) -> None:
         """Ground raised by a kerb on all sides."""
         self.builder.ground(x_m, y_m, height_m, material)

@@ -48,7 +48,7 @@ def _add_wood(site: Site, angle: float, distance: float) -> None:
     """A band of tree tops with a ragged edge, facing the origin."""
     rng, builder = site.rng, site.builder
     width, count = rng.uniform(25, 60), 14
-    material = Material("far wood", varied(rng, (0.04, 0.07, 0.025), 0.3), surface=Surface.FOLIAGE)
+    material = Material("far wood", varied(rng, (0.05, 0.075, 0.03), 0.3), surface=Surface.GRASS)
     y = np.linspace(width / 2, -width / 2, count)
     top = rng.uniform(5, 14) * (0.75 + 0.25 * rng.random(count)) * np.sin(np.linspace(0.35, math.pi - 0.35, count))
     low = np.stack([np.zeros(count), y, np.full(count, -0.5)], 1)
@@ -66,5 +66,5 @@ def _add_hills(site: Site) -> None:
     rim = np.stack([reach * np.cos(angle), reach * np.sin(angle)], 1)
     low = np.concatenate([rim, np.full((49, 1), -1.0)], 1)
     high = np.concatenate([rim * 1.25, np.maximum(height, 1.0)[:, None]], 1)
-    material = Material("hills", varied(rng, (0.07, 0.09, 0.05)), surface=Surface.FOLIAGE)
+    material = Material("hills", varied(rng, (0.07, 0.09, 0.05)), surface=Surface.GRASS)
     site.builder.quads(np.stack([low[1:], low[:-1], high[:-1], high[1:]], 1), material)

@@ -144,18 +144,29 @@ def _young(builder: MeshBuilder, rng: np.random.Generator) -> None:
 def _bare(builder: MeshBuilder, rng: np.random.Generator) -> None:
     height = rng.uniform(5.0, 10.0)
     bark = choice(rng, (BARK, PALE_BARK))
-    _branch(builder, np.zeros(3), np.array([0.0, 0.0, height * 0.45]), 0.16, 0, bark, rng)
+    _branch(builder, np.zeros(3), np.array([0.0, 0.0, height * 0.33]), 0.15, 0, bark, rng)
 
 
 def _branch(builder, start, along, radius, depth, bark, rng) -> None:
     end = start + along
     _limb(builder, start, end, radius, radius * 0.68, bark, 6 if depth < 2 else 4)
     if depth >= 3:
+        _twigs(builder, start, end, bark, rng)
         return
-    for _ in range(3 if depth < 3 else 2):
+    for _ in range(4 if depth == 0 else 3):
         direction = _unit(along / np.linalg.norm(along) + rng.normal(0.0, 0.5, 3) + [0, 0, 0.12])
-        length = np.linalg.norm(along) * rng.uniform(0.55, 0.78)
-        _branch(builder, end, direction * length, radius * 0.6, depth + 1, bark, rng)
+        length = np.linalg.norm(along) * rng.uniform(0.6, 0.85)
+        _branch(builder, end, direction * length, radius * 0.55, depth + 1, bark, rng)
+
+
+def _twigs(builder, start, end, bark, rng) -> None:
+    """A spray of thin triangles around the end of a branch."""
+    count = 9
+    root = start + (end - start) * rng.uniform(0.2, 1.0, (count, 1))
+    direction = _unit(_unit(end - start) + rng.normal(0.0, 0.55, (count, 3)))
+    tip = root + direction * np.linalg.norm(end - start) * rng.uniform(0.4, 1.0, (count, 1))
+    side = _unit(np.cross(direction, rng.normal(0.0, 1.0, (count, 3)))) * 0.014
+    builder.triangles(np.stack([root - side, root + side, tip], 1), bark)
 
 
 def _limb(builder, start, end, radius, end_radius, bark, sides) -> None:

@@ -46,7 +46,8 @@ def build_bus(seed: int, size: Size | None, colour: Colour | None) -> Model:
     shell = build_shell(frame)
     assembly = Assembly()
     coat = paint(colour or fleet)
-    materials = {"paint": coat, "glass": GLASS, "rear glass": GLASS, "trim": PIANO_BLACK, "underbody": UNDERBODY}
+    pillars = coat if rng.random() < 0.4 else PIANO_BLACK
+    materials = {"paint": coat, "glass": GLASS, "rear glass": GLASS, "trim": pillars, "underbody": UNDERBODY}
     for kind, material in materials.items():
         assembly.add(shell.patch.chosen(shell.kinds == kind), material)
     _add_wheels(assembly, frame, rng)
@@ -83,7 +84,8 @@ def _add_front(assembly: Assembly, frame: Frame, shell: Shell, rng: np.random.Ge
     for across in (0.64, 0.78):
         lens = ahead.ellipse((half * across, height * 0.265), (0.075, 0.07), 0.012)
         assembly.add_both_sides(lens, LAMP_LIT, "headlamp")
-    assembly.add_both_sides(ahead.ellipse((half * 0.84, height * 0.25), (0.03, 0.05), 0.012), AMBER, "headlamp")
+    blinker = ahead.ellipse((half * 0.84, height * 0.25), (0.03, 0.05), 0.012)
+    assembly.add_both_sides(blinker, AMBER, "headlamp")
     assembly.add(ahead.rectangle((-half * 0.45, half * 0.45), (height * 0.22, height * 0.29)), PLASTIC)
     assembly.add(ahead.rectangle((-half * 0.80, half * 0.80), (0.36, 0.44)), PLASTIC)
     seat = half * 0.45
@@ -101,7 +103,7 @@ def _add_mirrors(assembly: Assembly, frame: Frame) -> None:
     assembly.add_both_sides(box(place, (0.14, 0.24, 0.46), 0.3), PLASTIC, "mirror")
     glass = box((place[0] - 0.073, place[1], place[2]), (0.01, 0.19, 0.39))
     assembly.add_both_sides(glass, MIRROR_GLASS, "mirror")
-    arm = limb((frame.x(0.02), half * 0.9, height * 0.86), (place[0], place[1], place[2] + 0.2), 0.03, 0.03, 6)
+    arm = limb((frame.x(0.02), half * 0.9, height * 0.86), (*place[:2], place[2] + 0.2), 0.03, 0.03, 6)
     assembly.add_both_sides(arm, PLASTIC, "mirror")
 
 
@@ -113,7 +115,8 @@ def _add_rear(assembly: Assembly, frame: Frame, shell: Shell) -> None:
     assembly.add(behind.rectangle((-half * 0.80, half * 0.80), (0.36, 0.48), 0.12), PLASTIC)
     lamp = behind.rectangle((-half * 0.86, -half * 0.74), (height * 0.26, height * 0.43))
     assembly.add_both_sides(lamp, TAIL_RED, "taillamp")
-    assembly.add_both_sides(behind.ellipse((-half * 0.80, height * 0.39), (0.05, 0.05), 0.01), AMBER, "taillamp")
+    blinker = behind.ellipse((-half * 0.80, height * 0.39), (0.05, 0.05), 0.01)
+    assembly.add_both_sides(blinker, AMBER, "taillamp")
 
 
 def _add_sides(
@@ -131,8 +134,11 @@ def _add_sides(
     for window in frame.shape.side_windows[1:]:
         for share in (0.3, 0.75):
             x = frame.x(window[0] + (window[1] - window[0]) * share)
-            seat = left.ellipse((-x, height * 0.40), (0.20, 0.25), 0.006, 7)
-            assembly.add_both_sides(seat, BEHIND_GLASS_PALE if rng.random() < 0.4 else BEHIND_GLASS_DARK)
+            seat = left.mound((-x, height * 0.39), 0.22, 0.11 * height, 0.006)
+            assembly.add_both_sides(seat, BEHIND_GLASS_DARK)
+            if rng.random() < 0.3:
+                head = left.ellipse((-x - 0.1, height * 0.52), (0.09, 0.12), 0.009)
+                assembly.add_both_sides(head, BEHIND_GLASS_PALE)
     for span in ((0.038, 0.085), (0.44, 0.545)) if rng.random() < 0.8 else ((0.038, 0.085),):
         _add_door(assembly, frame, right, span)
 

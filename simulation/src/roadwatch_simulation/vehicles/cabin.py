@@ -40,12 +40,14 @@ def _add_ahead(assembly: Assembly, frame: Frame, ahead: Drape, look: Look) -> No
     seat = half * 0.40
     for side in (-1.0, 1.0):
         assembly.add(ahead.ellipse((side * seat, low + 0.60 * tall), (0.13, 0.10), NEAR_M), BEHIND_GLASS_DARK)
-        assembly.add(ahead.ellipse((side * seat, low + 0.28 * tall), (0.25, 0.24 * tall), NEAR_M), BEHIND_GLASS_DARK)
+        back = ahead.mound((side * seat, low + 0.10 * tall), 0.25, 0.44 * tall, NEAR_M)
+        assembly.add(back, BEHIND_GLASS_DARK)
     sides = [1.0 if look.wheel_on_left else -1.0] if look.driver else []
     sides += [-side for side in sides if look.passengers > 1]
     for side in sides:
-        assembly.add(ahead.ellipse((side * seat, low + 0.60 * tall), (0.075, 0.105), NEAREST_M), BEHIND_GLASS_SKIN)
-        body = ahead.ellipse((side * seat, low + 0.24 * tall), (0.21, 0.20 * tall), NEAREST_M)
+        head = ahead.ellipse((side * seat, low + 0.60 * tall), (0.075, 0.105), NEAREST_M)
+        assembly.add(head, BEHIND_GLASS_SKIN)
+        body = ahead.mound((side * seat, low + 0.10 * tall), 0.21, 0.36 * tall, NEAREST_M)
         assembly.add(body, BEHIND_GLASS_PALE)
 
 
@@ -89,9 +91,11 @@ def _add_window(
     u = window[0] + (window[1] - window[0]) * (0.80 if number == 0 else 0.72)
     x, belt = frame.x(u), frame.belt(u)
     tall = frame.roof(u) - belt
-    assembly.add_both_sides(side.ellipse((-x, belt + 0.06), (0.14, 0.40 * tall), NEAR_M), BEHIND_GLASS_DARK)
-    assembly.add_both_sides(side.ellipse((-x, belt + 0.48 * tall), (0.07, 0.13), NEAR_M), BEHIND_GLASS_DARK)
+    assembly.add_both_sides(side.mound((-x, belt + 0.03), 0.16, 0.50 * tall, NEAR_M), BEHIND_GLASS_DARK)
+    assembly.add_both_sides(side.ellipse((-x, belt + 0.58 * tall), (0.07, 0.10), NEAR_M), BEHIND_GLASS_DARK)
     if look.driver and number == 0:
         at = -x - 0.14
-        assembly.add_both_sides(side.ellipse((at, belt + 0.50 * tall), (0.085, 0.11), NEAREST_M), BEHIND_GLASS_SKIN)
-        assembly.add_both_sides(side.ellipse((at, belt + 0.10), (0.13, 0.30 * tall), NEAREST_M), BEHIND_GLASS_PALE)
+        head = side.ellipse((at, belt + 0.52 * tall), (0.085, 0.105), NEAREST_M)
+        assembly.add_both_sides(head, BEHIND_GLASS_SKIN)
+        chest = side.mound((at, belt + 0.03), 0.15, 0.34 * tall, NEAREST_M)
+        assembly.add_both_sides(chest, BEHIND_GLASS_PALE)

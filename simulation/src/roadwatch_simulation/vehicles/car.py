@@ -7,6 +7,7 @@ import numpy as np
 from roadwatch_simulation.assembly import Assembly, Size
 from roadwatch_simulation.materials import (
     GLASS,
+    PILLAR,
     PLASTIC,
     PRIVACY_GLASS,
     UNDERBODY,
@@ -67,7 +68,7 @@ def _add_shell(assembly: Assembly, shell: Shell, look: Look) -> None:
         "paint": paint(look.colour),
         "glass": GLASS,
         "rear glass": PRIVACY_GLASS if look.privacy_glass else GLASS,
-        "trim": PLASTIC,
+        "trim": PILLAR,
         "plastic": PLASTIC,
         "underbody": UNDERBODY,
     }

@@ -35,6 +35,7 @@ class Drape:
         self._flat = np.stack([corners[seen] @ self.across, corners[seen][..., 2]], axis=-1)
         self._depth = corners[seen] @ self.toward
         self._normal = faces[seen]
+        self._low, self._high = self._flat.min(axis=1), self._flat.max(axis=1)
 
     def point(self, position: Sequence[float]) -> tuple[float, float]:
         """Where a point in model axes stands in the flat view."""
@@ -43,7 +44,7 @@ class Drape:
     def onto(self, points: np.ndarray, lift_m: float = LIFT_M) -> tuple[np.ndarray, np.ndarray]:
         """Points (n, 2) carried onto the shell: positions (n, 3), and which of them met it (n,)."""
         low, high = points.min(axis=0) - 1e-6, points.max(axis=0) + 1e-6
-        near = np.all((self._flat.max(axis=1) >= low) & (self._flat.min(axis=1) <= high), axis=1)
+        near = np.all((self._high >= low) & (self._low <= high), axis=1)
         flat, depths, normals = self._flat[near], self._depth[near], self._normal[near]
         if len(flat) == 0:
             return np.zeros((len(points), 3)), np.zeros(len(points), dtype=bool)
@@ -79,7 +80,7 @@ class Drape:
         )
 
     def ellipse(
-        self, center: tuple[float, float], radii: tuple[float, float], lift_m: float = LIFT_M, points: int = 9
+        self, center: tuple[float, float], radii: tuple[float, float], lift_m: float = LIFT_M, points: int = 8
     ) -> Patch:
         """An elliptic sheet."""
         angles = np.linspace(np.pi, 0.0, points)
@@ -87,7 +88,18 @@ class Drape:
         rise = radii[1] * np.sin(angles)
         lower = list(zip(across, center[1] - rise, strict=True))
         upper = list(zip(across, center[1] + rise, strict=True))
-        return self.sheet(lower, upper, 4, lift_m)
+        return self.sheet(lower, upper, 3, lift_m)
+
+    def mound(
+        self, foot: tuple[float, float], half_width: float, height: float, lift_m: float = LIFT_M
+    ) -> Patch:
+        """The upper half of an ellipse, standing with the middle of its flat side at `foot`."""
+        angles = np.linspace(np.pi, 0.0, 8)
+        across = foot[0] + half_width * np.cos(angles)
+        upper = foot[1] + height * np.sin(angles)
+        return self.sheet(
+            [(x, foot[1]) for x in across], list(zip(across, upper, strict=True)), 3, lift_m
+        )
 
     def stroke(self, line: Line, width_m: float, step_m: float = 0.09, lift_m: float = LIFT_M) -> Patch:
         """A thin band along a line, for seams, wipers and mouldings."""

@@ -6,7 +6,7 @@ import numpy as np
 
 from roadwatch_simulation.assembly import Assembly
 from roadwatch_simulation.geometry import box, ellipsoid, limb, merge, rotation, tube
-from roadwatch_simulation.materials import CHROME, MIRROR_GLASS, PLASTIC, SEAM, TAIL_RED, paint
+from roadwatch_simulation.materials import CHROME, MIRROR_GLASS, PLASTIC, PRIVACY_GLASS, SEAM, TAIL_RED, paint
 from roadwatch_simulation.vehicles.drape import Drape
 from roadwatch_simulation.vehicles.look import Look
 from roadwatch_simulation.vehicles.shapes import SHAPES
@@ -21,6 +21,8 @@ def add_fittings(assembly: Assembly, frame: Frame, shell: Shell, look: Look) -> 
     _add_mirrors(assembly, frame, look)
     _add_door_gaps(assembly, frame, side)
     _add_handles(assembly, frame, side, look)
+    if len(frame.shape.side_windows) == 1 and look.passengers > 0:
+        _add_crew_windows(assembly, frame, side, look)
     _add_cladding(assembly, frame, side, look)
     _add_roof(assembly, frame, look)
     _add_wipers(assembly, frame, shell)
@@ -61,7 +63,8 @@ def _add_door_gaps(assembly: Assembly, frame: Frame, side: Drape) -> None:
             away = abs(x - axle)
             if away < frame.arch_radius + 0.03:
                 foot = frame.wheel_radius + float(np.sqrt((frame.arch_radius + 0.03) ** 2 - away**2))
-        top = frame.belt(u) + (0.85 * (frame.roof(u) - frame.belt(u)) if len(frame.shape.side_windows) == 1 else 0.01)
+        framed = len(frame.shape.side_windows) == 1
+        top = frame.belt(u) + (0.85 * (frame.roof(u) - frame.belt(u)) if framed else 0.01)
         bow = 0.015
         line = [(-x, foot), (-x - bow, (foot + top) / 2), (-x, top)]
         assembly.add_both_sides(side.stroke(line, SEAM_M), SEAM)
@@ -70,6 +73,15 @@ def _add_door_gaps(assembly: Assembly, frame: Frame, side: Drape) -> None:
     rear_arch = -frame.axles[1] - frame.arch_radius - 0.03
     sill_line[1] = (min(sill_line[1][0], rear_arch), sill)
     assembly.add_both_sides(side.stroke(sill_line, SEAM_M), SEAM)
+
+
+def _add_crew_windows(assembly: Assembly, frame: Frame, side: Drape, look: Look) -> None:
+    """Windows in the load space of a van: in the sliding door, and on some all the way back."""
+    spans = ((0.385, 0.58), (0.625, 0.80), (0.82, 0.95))[: 1 if look.passengers == 1 else 3]
+    for span in spans:
+        near, far = -frame.x(span[0]), -frame.x(span[1])
+        low, high = (frame.size[2] * share for share in (0.50, 0.845))
+        assembly.add_both_sides(side.rectangle((near, far), (low, high), 0.15), PRIVACY_GLASS)
 
 
 def _add_handles(assembly: Assembly, frame: Frame, side: Drape, look: Look) -> None:
@@ -93,14 +105,15 @@ def _add_cladding(assembly: Assembly, frame: Frame, side: Drape, look: Look) -> 
         cosines, sines = np.cos(angles), np.sin(angles)
         inner = frame.arch_radius
         ring = [
-            [(-axle + radius * c, frame.wheel_radius + radius * s) for c, s in zip(cosines, sines, strict=True)]
+            np.column_stack([-axle + radius * cosines, frame.wheel_radius + radius * sines])
             for radius in (inner * 0.985, inner + lip)
         ]
         assembly.add_both_sides(side.sheet(ring[0], ring[1], 2), PLASTIC if frame.shape.rugged else SEAM)
     if look.door_moulding:
         front, rear = (frame.x(u) for u in (_door_edges(frame)[0], _door_edges(frame)[-1]))
         height = frame.shape.clearance_m + 0.30
-        assembly.add_both_sides(side.stroke([(-front + 0.05, height), (-rear - 0.05, height)], 0.045), PLASTIC)
+        moulding = side.stroke([(-front + 0.05, height), (-rear - 0.05, height)], 0.045)
+        assembly.add_both_sides(moulding, PLASTIC)
     if look.chrome:
         windows = frame.shape.side_windows
         us = np.linspace(windows[0][0], windows[-1][1], 9)
@@ -145,6 +158,9 @@ def _add_wipers(assembly: Assembly, frame: Frame, shell: Shell) -> None:
     ahead = Drape(shell.patch, 0.0)
     foot = frame.roof(frame.shape.windscreen[0])
     half = frame.size[1] / 2
+    across = np.linspace(-0.80, 0.80, 13)
+    cowl = [(half * a, foot + 0.012 - 0.03 * a * a) for a in across]
+    assembly.add(ahead.stroke(cowl, 0.035), PLASTIC)
     for start, end in ((0.55, 0.02), (0.02, -0.52)):
         line = [(half * start, foot + 0.03), (half * end, foot + 0.075)]
         assembly.add(ahead.stroke(line, 0.018, lift_m=0.012), PLASTIC)

@@ -36,7 +36,7 @@ def add_front(assembly: Assembly, frame: Frame, shell: Shell, look: Look, plates
     """Adds everything that makes the front of a car look at you."""
     ahead = Drape(shell.patch, 0.0)
     lip = frame.roof(0.03)
-    bottom = frame.shape.clearance_m + 0.03
+    bottom = frame.floor(0.0) + 0.005
     _add_headlamps(assembly, frame, shell, look, lip)
     _add_grille(assembly, frame, ahead, look, lip, bottom)
     _add_bumper(assembly, frame, ahead, look, bottom)
@@ -44,26 +44,38 @@ def add_front(assembly: Assembly, frame: Frame, shell: Shell, look: Look, plates
 
 
 def _add_headlamps(assembly: Assembly, frame: Frame, shell: Shell, look: Look, lip: float) -> None:
-    corner = Drape(shell.patch, LAMP_VIEW_DEG)
+    corner = Drape(shell.between(frame.x(0.25), frame.x(0.0)), LAMP_VIEW_DEG)
     height = lip - 0.115
     half = frame.size[1] / 2
     inner = (frame.x(0.0), half * 0.50, height - 0.01)
     outer = (frame.x(0.085), half * 0.96, height + 0.035)
-    outline = [(at, low * look.lamp_height, high * look.lamp_height) for at, low, high in HEADLAMPS[look.lamp_style]]
-    inset = [(at, low * 0.62, high * 0.62) for at, low, high in outline]
+    tall = look.lamp_height
+    outline = [(at, low * tall, high * tall) for at, low, high in HEADLAMPS[look.lamp_style]]
     smoked = look.lamp_style in (1, 3)
-    assembly.add_both_sides(
-        corner_lamp(corner, inner, outer, outline), LAMP_SMOKED if smoked else LAMP_CLEAR, "headlamp"
-    )
-    for span in ((0.10, 0.42), (0.48, 0.74)):
-        lens = corner_lamp(corner, inner, outer, inset, span, 0.008)
-        assembly.add_both_sides(lens, LAMP_LIT if smoked else LAMP_SMOKED, "headlamp")
-        if not smoked:
-            spot = [(at, low * 0.5, high * 0.5) for at, low, high in inset]
-            middle = (span[0] + span[1]) / 2
-            bulb = corner_lamp(corner, inner, outer, spot, (middle - 0.08, middle + 0.08), 0.011)
-            assembly.add_both_sides(bulb, LAMP_LIT, "headlamp")
+    shell_glass = corner_lamp(corner, inner, outer, outline)
+    assembly.add_both_sides(shell_glass, LAMP_SMOKED if smoked else LAMP_CLEAR, "headlamp")
+    inset = [(at, low * 0.70, high * 0.70) for at, low, high in outline]
+    for middle, reach in ((0.24, 0.13), (0.56, 0.15)):
+        oval, span = _round(inset, middle, reach), (middle - reach, middle + reach)
+        bowl = corner_lamp(corner, inner, outer, oval, span, 0.008)
+        assembly.add_both_sides(bowl, LAMP_CLEAR if smoked else LAMP_SMOKED, "headlamp")
+        bulb_reach = reach * 0.55
+        spot = _round([(at, low * 0.55, high * 0.55) for at, low, high in inset], middle, bulb_reach)
+        bulb = corner_lamp(corner, inner, outer, spot, (middle - bulb_reach, middle + bulb_reach), 0.011)
+        assembly.add_both_sides(bulb, LAMP_LIT, "headlamp")
     assembly.add_both_sides(corner_lamp(corner, inner, outer, inset, (0.80, 0.93), 0.008), AMBER, "headlamp")
+
+
+def _round(outline: Outline, middle: float, reach: float) -> Outline:
+    """The part of an outline around `middle`, drawn in to an oval of half length `reach`."""
+    table = np.array(outline)
+    ovals = []
+    for turn in np.linspace(-1.0, 1.0, 9):
+        at = middle + reach * turn
+        low, high = (float(np.interp(at, table[:, 0], table[:, column])) for column in (1, 2))
+        center, half = (low + high) / 2, (high - low) / 2 * float(np.sqrt(max(1.0 - turn * turn, 0.0)))
+        ovals.append((at, center - half, center + half))
+    return ovals
 
 
 def _add_grille(

@@ -12,7 +12,7 @@ from roadwatch_simulation.vehicles.drape import LIFT_M, Drape
 Outline = Sequence[tuple[float, float, float]]
 """(share from the inner to the outer end, lower edge, upper edge): edges in metres from the lamp's middle."""
 
-POINTS = 13
+POINTS = 10
 
 
 def corner_lamp(
@@ -33,5 +33,5 @@ def corner_lamp(
     upper = middle + np.interp(shares, table[:, 0], table[:, 2])
     order = np.argsort(across)
     return drape.sheet(
-        np.column_stack([across, lower])[order], np.column_stack([across, upper])[order], 4, lift_m
+        np.column_stack([across, lower])[order], np.column_stack([across, upper])[order], 3, lift_m
     )

@@ -63,5 +63,5 @@ def draw_look(shape: BodyShape, colour: Colour, rng: np.random.Generator) -> Loo
         driver=bool(chance[9] < 0.5),
         passengers=int(rng.integers(0, 3)),
         wheel_on_left=bool(chance[10] < 0.85),
-        seen_through=bool(chance[11] < 0.45),
+        seen_through=bool(chance[11] < 0.35),
     )

@@ -20,6 +20,7 @@ from roadwatch_simulation.materials import (
     STEEL,
     TAIL_RED,
     UNDERBODY,
+    WHITE_TRIM,
     WORK_PAINTS,
     Colour,
     paint,
@@ -91,7 +92,8 @@ def _add_face(cab: _Cab, frame: Frame, shell: Shell, rng: np.random.Generator) -
     low = frame.shape.clearance_m
     cab.append((ahead.rectangle((-half * 0.82, half * 0.82), (low, low + 0.22)), PLASTIC, None))
     wide = float(rng.uniform(0.5, 0.72))
-    cab.append((ahead.rectangle((-half * wide, half * wide), (low + 0.27, height * 0.385)), PIANO_BLACK, None))
+    grille = ahead.rectangle((-half * wide, half * wide), (low + 0.27, height * 0.385))
+    cab.append((grille, PIANO_BLACK, None))
     for share in (0.35, 0.7):
         z = low + 0.27 + (height * 0.385 - low - 0.27) * share
         cab.append((ahead.stroke([(-half * wide, z), (half * wide, z)], 0.02, lift_m=0.01), STEEL, None))
@@ -116,7 +118,7 @@ def _add_cab_sides(cab: _Cab, frame: Frame, shell: Shell) -> None:
     place = (frame.x(0.05), half + 0.20, height * 0.68)
     cab.both(box(place, (0.12, 0.22, 0.44), 0.3), PLASTIC, "mirror")
     cab.both(box((place[0] - 0.063, place[1], place[2]), (0.01, 0.18, 0.38)), MIRROR_GLASS, "mirror")
-    arm = limb((frame.x(0.15), half * 0.95, height * 0.84), (place[0], place[1], place[2] + 0.15), 0.022, 0.022, 5)
+    arm = limb((frame.x(0.15), half * 0.95, height * 0.84), (*place[:2], place[2] + 0.15), 0.022, 0.022, 5)
     cab.both(arm, PLASTIC, "mirror")
 
 
@@ -146,7 +148,8 @@ def _add_cargo(
         assembly.add_both_sides(bar, STEEL)
     assembly.add(box((x, 0, height - 0.04), (0.006, width * 0.98, 0.08)), STEEL)
     if rng.random() < 0.3:
-        assembly.add(box((front + 0.12, 0, height - 0.5), (0.3, width * 0.7, 0.6), 0.2), paint((0.6, 0.6, 0.6)))
+        cooler = box((front + 0.12, 0, height - 0.5), (0.3, width * 0.7, 0.6), 0.2)
+        assembly.add(cooler, WHITE_TRIM)
 
 
 def _add_chassis(assembly: Assembly, back: float, front: float, width: float) -> None:
@@ -177,5 +180,5 @@ def _add_wheels(
             place = (x, sign * width * 0.468, radius)
             breadth = TWIN_TYRES_M if name == "rear" else TYRE_WIDTH_M
             add_wheel(assembly, design, place, breadth, f"tyre_{name}_{side}")
-    flap = merge([box((axles[1] - radius - 0.12, sign * width * 0.40, 0.5), (0.02, 0.5, 0.5)) for sign in (-1, 1)])
-    assembly.add(flap, PLASTIC)
+    flap = box((axles[1] - radius - 0.12, width * 0.40, 0.5), (0.02, 0.5, 0.5))
+    assembly.add_both_sides(flap, PLASTIC)

@@ -9,8 +9,10 @@ from roadwatch_simulation.geometry import tube
 from roadwatch_simulation.materials import (
     AMBER,
     CHROME,
+    GLASS,
     LAMP_CLEAR,
     PLASTIC,
+    PRIVACY_GLASS,
     SEAM,
     STEEL,
     TAIL_BRIGHT,
@@ -42,7 +44,7 @@ def add_rear(assembly: Assembly, frame: Frame, shell: Shell, look: Look, plates:
     """Adds everything behind."""
     behind = Drape(shell.patch, 180.0)
     top = frame.roof(0.988)
-    bottom = frame.shape.clearance_m + 0.03
+    bottom = frame.floor(1.0) + 0.005
     _add_tail_lamps(assembly, frame, shell, look, top)
     _add_boot(assembly, frame, behind, look, top, bottom)
     _add_bumper(assembly, frame, behind, look, bottom)
@@ -52,7 +54,8 @@ def add_rear(assembly: Assembly, frame: Frame, shell: Shell, look: Look, plates:
 
 
 def _add_tail_lamps(assembly: Assembly, frame: Frame, shell: Shell, look: Look, top: float) -> None:
-    corner = Drape(shell.patch, LAMP_VIEW_DEG)
+    end = frame.shape.bed[1] + 0.003 if frame.shape.bed else 0.80
+    corner = Drape(shell.between(frame.x(1.0), frame.x(end)), LAMP_VIEW_DEG)
     half = frame.size[1] / 2
     tall = frame.shape.hatch or frame.shape.bed is not None
     height = min(top, 1.12) - (0.20 if tall else 0.125)
@@ -62,7 +65,8 @@ def _add_tail_lamps(assembly: Assembly, frame: Frame, shell: Shell, look: Look, 
     outline = (TALL_LAMPS if tall else WIDE_LAMPS)[look.tail_style]
     inset = [(at, low * 0.6, high * 0.6) for at, low, high in outline]
     assembly.add_both_sides(corner_lamp(corner, inner, outer, outline), TAIL_RED, "taillamp")
-    assembly.add_both_sides(corner_lamp(corner, inner, outer, inset, (0.40, 0.85), 0.009), TAIL_BRIGHT, "taillamp")
+    lens = corner_lamp(corner, inner, outer, inset, (0.40, 0.85), 0.009)
+    assembly.add_both_sides(lens, TAIL_BRIGHT, "taillamp")
     white = corner_lamp(corner, inner, outer, inset, (0.06, 0.30), 0.009)
     assembly.add_both_sides(white, AMBER if look.tail_style == 1 else LAMP_CLEAR, "taillamp")
     if look.tail_bar:
@@ -82,14 +86,15 @@ def _add_boot(
     assembly.add(behind.stroke(seam, 0.010), SEAM)
     if look.chrome:
         handle = bottom + (top - bottom) * 0.60 + 0.10
-        assembly.add(behind.stroke([(-half * 0.35, handle), (half * 0.35, handle)], 0.022, lift_m=0.01), CHROME)
+        bar = behind.stroke([(-half * 0.35, handle), (half * 0.35, handle)], 0.022, lift_m=0.01)
+        assembly.add(bar, CHROME)
     badge = behind.ellipse((0.0, top - 0.12), (0.050, 0.042), 0.010)
     assembly.add(badge, CHROME)
     name = behind.rectangle((half * 0.40, half * 0.58), (top - 0.20, top - 0.18))
     assembly.add(name, CHROME)
     window = frame.shape.rear_window
     if window is None:
-        assembly.add(behind.stroke([(0.0, bottom + 0.3), (0.0, frame.size[2] * 0.96)], 0.014), SEAM)
+        _add_rear_doors(assembly, frame, behind, look, bottom)
         return
     stop = frame.roof(window[0]) - 0.03
     assembly.add(behind.rectangle((-0.16, 0.16), (stop - 0.012, stop + 0.012)), TAIL_BRIGHT)
@@ -98,12 +103,24 @@ def _add_boot(
         assembly.add(behind.stroke([(0.02, foot), (-0.34, foot + 0.07)], 0.018, lift_m=0.012), PLASTIC)
 
 
+def _add_rear_doors(
+    assembly: Assembly, frame: Frame, behind: Drape, look: Look, bottom: float
+) -> None:
+    """Two wing doors of a van, glazed on some."""
+    height, half = frame.size[2], frame.size[1] / 2
+    if look.tail_style != 0:
+        pane = behind.rectangle((half * 0.09, half * 0.72), (height * 0.55, height * 0.84), 0.12)
+        assembly.add_both_sides(pane, PRIVACY_GLASS if look.privacy_glass else GLASS)
+    assembly.add(behind.stroke([(0.0, bottom + 0.3), (0.0, height * 0.96)], 0.014), SEAM)
+    assembly.add(behind.rectangle((-0.16, 0.16), (height * 0.935, height * 0.95)), TAIL_BRIGHT)
+
+
 def _add_bumper(assembly: Assembly, frame: Frame, behind: Drape, look: Look, bottom: float) -> None:
     half = frame.size[1] / 2
-    line = np.linspace(-0.92, 0.92, 17)
+    line = np.linspace(-0.74, 0.74, 15)
     rise = 0.16 if frame.shape.rugged else 0.10
     assembly.add(
-        behind.sheet([(x * half, bottom - 0.02) for x in line],
+        behind.sheet([(x * half, bottom + 0.002) for x in line],
                      [(x * half, bottom + rise - 0.04 * x * x) for x in line], 3), PLASTIC)  # fmt: skip
     crease = [(x * half, bottom + 0.30) for x in line]
     assembly.add(behind.stroke(crease, 0.008), SEAM)

@@ -55,6 +55,12 @@ class Frame:
         """Half the body's width (m) at `u`."""
         return self.size[1] / 2.0 * float(self.plan(self.warp(u)))
 
+    def floor(self, u: float) -> float:
+        """Height (m) of the body's underside at `u`: it lifts towards the bumpers."""
+        x, (front, rear) = self.x(u), self.axles
+        beyond = max(x - front - self.arch_radius, rear - self.arch_radius - x, 0.0)
+        return self.shape.clearance_m + min(0.14 * beyond, 0.07)
+
     @property
     def axles(self) -> tuple[float, float]:
         """Where the front and the rear axle stand (m ahead of the middle)."""
@@ -92,6 +98,11 @@ class Shell:
     patch: Patch
     kinds: np.ndarray
 
+    def between(self, rear_x: float, front_x: float) -> Patch:
+        """The triangles whose middles lie between two places along the car (m ahead of its middle)."""
+        middle = self.patch.positions[:, :, 0].mean(axis=1)
+        return self.patch.chosen((middle >= rear_x) & (middle <= front_x))
+
 
 def build_shell(frame: Frame) -> Shell:
     """The lofted skin of a car."""
@@ -117,14 +128,14 @@ def build_shell(frame: Frame) -> Shell:
 def _stations(frame: Frame) -> list[float]:
     """Places (u) of the cross-sections, from tail to nose: finer at the ends, the arches and the windows."""
     shape = frame.shape
-    places = {*np.linspace(0.0, 1.0, 25), 0.003, 0.008, 0.016, 0.025, 0.035, 0.05, 0.97, 0.98, 0.988, 0.994}
+    places = {*np.linspace(0.0, 1.0, 15), 0.003, 0.008, 0.016, 0.025, 0.035, 0.05, 0.97, 0.98, 0.988, 0.994}
     places |= {u for u, _ in shape.roof_line}
     for span in (*shape.side_windows, shape.windscreen, shape.rear_window, shape.bed):
         places |= set(span or ())
     if shape.bed:
         places |= {shape.bed[0] - 0.002, shape.bed[1] + 0.002}
     for axle in frame.axles:
-        angles = np.linspace(0.0, np.pi, 13)
+        angles = np.linspace(0.0, np.pi, 11)
         places |= {frame.u(axle + frame.arch_radius * float(np.cos(angle))) for angle in angles}
         places |= {frame.u(axle + side * (frame.arch_radius + 0.004)) for side in (-1, 1)}
     ordered = sorted(float(np.clip(place, 0.0, 1.0)) for place in places)
@@ -140,7 +151,7 @@ def _half_section(frame: Frame, u: float) -> np.ndarray:
     """Half a cross-section (HALF_POINTS, 2) of (y, z) in metres, from the floor's to the roof's middle."""
     height, width = frame.size[2], frame.half_width(u)
     roof, belt = frame.roof(u), frame.belt(u)
-    floor = frame.shape.clearance_m + 0.05 * (u < 0.03 or u > 0.97)
+    floor = frame.floor(u)
     sill, arched = _sill_height(frame, u, floor)
     sill = min(sill, belt - 0.05)
     well = max(floor, 0.55 * sill) if arched else floor
@@ -153,7 +164,8 @@ def _half_section(frame: Frame, u: float) -> np.ndarray:
     body = [
         (0.0, well), (0.80 * width, well), (0.81 * width, sill), (0.968 * width, sill),
         (0.990 * width, sill + (middle - sill) * 0.30), (width, middle),
-        (0.990 * width, belt - (belt - middle) * 0.36), (0.976 * width, belt - 0.016 * height), (0.945 * width, belt),
+        (0.997 * width, belt - (belt - middle) * 0.30), (0.974 * width, belt - 0.018 * height),
+        (0.945 * width, belt),
     ]  # fmt: skip
     foot, top = np.array(body[-1]), np.array([roof_y, roof_z])
     sides = [tuple(foot + (top - foot) * share) for share in (0.06, 0.5, 0.92, 1.0)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from roadwatch_simulation.geometry import Patch, lathe, rotation, shade
 from roadwatch_simulation.materials import BRAKE, DARK_RIM, HUB_CAP, RIM, SEAM, TYRE
 from roadwatch_simulation.model import Material
 
-TYRE_SEGMENTS = 26
+TYRE_SEGMENTS = 24
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,8 @@ def draw_wheels(rng: np.random.Generator, plain: float = 0.2) -> WheelDesign:
     metal = HUB_CAP if capped else (DARK_RIM if rng.random() < 0.25 else RIM)
     spokes = int(rng.choice([5, 5, 6, 7, 8, 10]))
     width = float(rng.uniform(0.34, 0.60)) / spokes
-    return WheelDesign(metal, spokes, width, float(rng.uniform(0, 0.25)), float(rng.uniform(0.64, 0.73)), capped)
+    twist, rim_share = float(rng.uniform(0, 0.25)), float(rng.uniform(0.64, 0.73))
+    return WheelDesign(metal, spokes, width, twist, rim_share, capped)
 
 
 def add_wheel(
@@ -48,12 +50,13 @@ def add_wheel(
         assembly.add(outward if y > 0 else outward.mirrored(), material, part)
 
 
-def _wheel(design: WheelDesign, radius: float, width: float) -> list[tuple[Patch, Material]]:
+@lru_cache(maxsize=4)
+def _wheel(design: WheelDesign, radius: float, width: float) -> tuple[tuple[Patch, Material], ...]:
     upright = rotation("x", -np.pi / 2)
     rim = radius * design.rim_share
     tyre = [
-        (rim * 0.9, -width), (radius * 0.95, -width), (radius, -width + 0.03), (radius, -0.03),
-        (radius * 0.965, -0.004), (radius * 0.86, 0.008), (rim * 1.03, 0.0), (rim, -0.012),
+        (rim * 0.9, -width), (radius * 0.96, -width), (radius, -width + 0.03), (radius, -0.03),
+        (radius * 0.955, -0.002), (radius * 0.86, 0.008), (rim, -0.010),
     ]  # fmt: skip
     dish = [(rim, -0.012), (rim * 0.955, -0.008), (rim * 0.90, -0.05)]
     well = [(rim * 0.90, -0.055), (0.0, -0.055)]
@@ -65,7 +68,7 @@ def _wheel(design: WheelDesign, radius: float, width: float) -> list[tuple[Patch
         (_face(design, rim), design.metal),
         (lathe([(rim * 0.22, -0.045), (rim * 0.19, -0.014), (0.0, -0.012)], 10), design.metal),
     ]
-    return [(patch.turned(upright), material) for patch, material in turned]
+    return tuple((patch.turned(upright), material) for patch, material in turned)
 
 
 def _face(design: WheelDesign, rim: float) -> Patch:
@@ -77,7 +80,8 @@ def _face(design: WheelDesign, rim: float) -> Patch:
     for number in range(design.spokes):
         angle = 2.0 * np.pi * number / design.spokes
         start = len(vertices)
-        for share, half_width, height, twist in ((0.12, 0.7, -0.02, 0.0), (0.93, 1.0, -0.028, design.twist_rad)):
+        ends = ((0.12, 0.7, -0.02, 0.0), (0.93, 1.0, -0.028, design.twist_rad))
+        for share, half_width, height, twist in ends:
             for side in (-1.0, 1.0):
                 aside = side * np.pi * design.spoke_width * half_width * (0.55 if share > 0.5 else 1.6)
                 direction = angle + twist + aside

@@ -1,4 +1,3 @@
-invariant gl_Position;
 // Only the shape: for ids, silhouettes and shadows.
 in vec3 in_position;
 #if !MASK

@@ -17,7 +17,7 @@ vec3 sky_radiance(vec3 direction, float blur) {
     float up = clamp(direction.z, 0.0, 1.0);
     vec3 clear_sky = mix(horizon_colour, zenith_colour, pow(up, 0.45));
     vec2 plane = direction.xy / (up + 0.10) * 0.045 + cloud_offset;
-    float density = textureLod(noise, plane, blur * 5.0).r * 0.75 + textureLod(noise, plane * 3.7, blur * 6.0).a * 0.25;
+    float density = textureLod(noise, plane, blur * 5.0).r + textureLod(noise, plane * 3.7, blur * 6.0).a * 0.36 - 0.18;
     float cloud = smoothstep(1.0 - cloud_cover, 1.0 - cloud_cover + 0.30, density) * smoothstep(0.01, 0.12, up);
     float lining = 0.82 + 0.36 * smoothstep(0.9, 0.4, density);
     vec3 colour = mix(clear_sky, cloud_colour * lining, cloud * 0.9);

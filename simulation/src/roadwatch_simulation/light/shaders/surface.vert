@@ -1,4 +1,3 @@
-invariant gl_Position;
 in vec3 in_position;
 in vec3 in_normal;
 in uint in_tag;
@@ -8,6 +7,7 @@ out vec3 world_position;
 out vec3 world_normal;
 out vec3 model_position;
 flat out uint material;
+
 void main() {
     world_position = (world_from_model * vec4(in_position, 1.0)).xyz;
     world_normal = mat3(world_from_model) * in_normal;

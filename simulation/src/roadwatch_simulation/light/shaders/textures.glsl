@@ -46,7 +46,7 @@ Look look_of(vec3 base, float gloss, vec3 world, vec3 model, vec3 normal, float 
     vec4 middle = noise_at(p + 7.3, 0.093, footprint);
     vec4 fine = noise_at(p, 0.55, footprint);
     float grain = noise_at(p, 9.0, footprint).g;
-    float shade = 0.62 + 0.34 * broad.r + 0.22 * middle.a + 0.22 * (fine.a - 0.5) + 0.45 * (grain - 0.5);
+    float shade = 0.76 + 0.26 * broad.r + 0.12 * (middle.a - 0.5) + 0.10 * (fine.a - 0.5) + 0.40 * (grain - 0.5);
     vec2 patch_cell = floor(vec2(p.x / 7.0 + broad.a, p.y / 2.6 + broad.r));
     shade *= 1.0 - 0.20 * step(0.86, hash2(patch_cell)) * smoothstep(0.2, 0.4, middle.r);
     float crack = noise_at(p, 0.045, footprint).b;
@@ -89,11 +89,11 @@ Look look_of(vec3 base, float gloss, vec3 world, vec3 model, vec3 normal, float 
     vec4 broad = noise_at(p, 0.03, footprint);
     look.colour = mix(base * (0.66 + 0.46 * brick + 0.22 * (broad.r - 0.5)), vec3(0.34, 0.32, 0.29), joint * 0.7);
 #elif SURFACE == FOLIAGE
-    float leaf = hash2(floor(model.xy / 0.11) + floor(model.z / 0.11) * 57.0);
+    float leaf = hash2(floor(model.xy / 0.09) + floor(model.z / 0.09) * 57.0);
     float clump = noise_at(model.xy + model.zx * 0.7, 0.16, footprint).r;
     float near_leaf = mix(leaf, 0.5, smoothstep(0.06, 0.3, footprint));
     look.colour = base * (0.35 + 0.75 * near_leaf + 0.65 * clump) * mix(vec3(1.0), vec3(1.35, 1.1, 0.7), near_leaf * near_leaf);
-    vec3 cell = floor(model / 0.16);
+    vec3 cell = floor(model / 0.09);
     look.bump = (vec3(hash2(cell.xy + cell.z), hash2(cell.yz + cell.x * 3.0), hash2(cell.zx + cell.y * 7.0)) - 0.5) * 1.1;
 #elif SURFACE == CLOTH
     vec2 p = along_surface(model, normal);

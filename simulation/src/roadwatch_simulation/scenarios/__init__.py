@@ -1,0 +1,41 @@
+"""Scenes made by name and seed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from ..errors import SimulationError
+from ..scene import Scene
+from . import paper
+from .drive import traffic
+from .training import training_scene
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A generator of scenes: `build(seed, frames)`."""
+
+    about: str
+    frames: int
+    build: Callable[[int, int], Scene]
+
+
+SCENARIOS: dict[str, Scenario] = {
+    "paper_x_path": Scenario("one car crosses 30 m ahead of a full-HD camera", 75, paper.x_path),
+    "paper_y_path": Scenario("one car drives away from a full-HD camera, 8 to 45 m", 75, paper.y_path),
+    "turntable": Scenario("one car turns through 360 degrees, 12 m ahead", 180, paper.turntable),
+    "grid": Scenario("one car stands in every cell of a ground grid once", len(paper.grid_cells()), paper.grid),
+    "traffic": Scenario("six cameras on a car in moving traffic", 120, traffic),
+    "training": Scenario("one random picture, as for training a detector", 1, lambda seed, _: training_scene(seed, 0)),
+}
+
+
+def build_scenario(name: str, seed: int = 0, frames: int | None = None) -> Scene:
+    """The scene of that name with that seed, of its own length unless `frames` says otherwise."""
+    if name not in SCENARIOS:
+        raise SimulationError(f"scenario `{name}` does not exist; there are {', '.join(SCENARIOS)}")
+    if frames is not None and frames < 1:
+        raise SimulationError(f"a scenario needs at least 1 frame, not {frames}")
+    scenario = SCENARIOS[name]
+    return scenario.build(seed, scenario.frames if frames is None else frames)

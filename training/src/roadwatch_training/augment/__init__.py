@@ -1,0 +1,1 @@
+"""Pictures made to vary more than the simulator does, so that real ones fall within what was seen."""

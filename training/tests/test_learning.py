@@ -1,0 +1,113 @@
+"""Training learns, stops, resumes and exports."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from roadwatch_training.augment.geometry import Framing
+from roadwatch_training.augment.recipe import Recipe
+from roadwatch_training.batches import BatchPlan, batches
+from roadwatch_training.cli import main
+from roadwatch_training.export import export
+from roadwatch_training.images import ImageStore, read_rgb
+from roadwatch_training.inference import Detector, letterboxed
+from roadwatch_training.labels import read_folder
+from roadwatch_training.losses import detection_losses
+from roadwatch_training.network import Cells, DecodedNetwork, DetectorNetwork, NetworkShape
+from roadwatch_training.scoring import Scored, Tally, add_image
+from roadwatch_training.settings import Settings
+from roadwatch_training.trainer import Training
+
+TINY = NetworkShape(stem=8, stages=(16, 24, 32, 48), depths=(1, 1, 1, 1), pyramid=24)
+CALM = Recipe(mosaic=0, pasted=0, blots=0, blended=0, texture_only=0, untouched=1)
+
+
+@pytest.fixture(scope="module")
+def learnt(toy_folder: Path) -> DetectorNetwork:
+    """A tiny network that has seen a dozen pictures over and over."""
+    torch.manual_seed(0)
+    store = ImageStore.load(read_folder(toy_folder))
+    framing = Framing(256, 160, (0.9, 1.3))
+    made = batches(store, BatchPlan(5, 8, framing, CALM), first=0, workers=0)
+    network = DetectorNetwork(TINY).to(memory_format=torch.channels_last)
+    cells = Cells.of_input(256, 160)
+    steps = 160
+    optimiser = torch.optim.AdamW(network.parameters(), 4e-3)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, 4e-3, total_steps=steps)
+    for _ in range(steps):
+        batch = next(made)
+        losses = detection_losses(network(batch.network_input()), batch.targets, cells)
+        optimiser.zero_grad()
+        losses.total.backward()
+        optimiser.step()
+        schedule.step()
+    return network
+
+
+def test_a_handful_of_pictures_is_learnt_and_survives_the_export(
+    learnt: DetectorNetwork, toy_folder: Path, tmp_path: Path
+) -> None:
+    export(learnt, tmp_path / "toy.onnx", {})
+    detector = Detector(tmp_path / "toy.onnx")
+    tally = Tally()
+    for image in read_folder(toy_folder):
+        detections = detector.detect(read_rgb(image.path), 0.25)
+        add_image(tally, detections, image.objects, Scored(classes=frozenset({"car"})))
+    assert tally.objects > 10
+    assert tally.recall(0.25) >= 0.9
+    assert tally.precision(0.25) >= 0.9
+
+
+def test_the_exported_graph_computes_what_the_network_does(learnt: DetectorNetwork, tmp_path: Path) -> None:
+    export(learnt, tmp_path / "toy.onnx", {})
+    detector = Detector(tmp_path / "toy.onnx")
+    images = np.random.default_rng(0).random((2, 3, 384, 640), np.float32)
+    found = detector.session.run(None, {detector.input_name: images})[0]
+    with torch.no_grad():
+        expected = DecodedNetwork(learnt.eval(), 640, 384)(torch.from_numpy(images)).numpy()
+    assert found.shape == (2, 10, 5040)
+    np.testing.assert_allclose(found, expected, rtol=1e-3, atol=1e-3)
+    assert detector.class_names == ("person", "bicycle", "car", "motorcycle", "bus", "truck")
+
+
+def test_a_resumed_training_ends_where_an_uninterrupted_one_does(toy_folder: Path, tmp_path: Path) -> None:
+    store = ImageStore.load(read_folder(toy_folder))
+    settings = Settings(width="small", width_px=64, height_px=64, batch_size=2, images=12, workers=0)
+    whole = Training(settings, store, tmp_path / "whole", print)
+    whole.run()
+    first = Training(settings, store, tmp_path / "parts", print)
+    plan = batches(store, first._plan(), 0, 0)
+    for _ in range(3):
+        first._step(first.network, next(plan))
+    first.save()
+    second = Training(settings, store, tmp_path / "parts", print)
+    second.resume()
+    second.run()
+    for name, value in whole.average.network.state_dict().items():
+        torch.testing.assert_close(value, second.average.network.state_dict()[name], msg=name)
+
+
+def test_the_command_trains_exports_and_scores(
+    toy_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture
+) -> None:
+    out = tmp_path / "run"
+    words = ["detector", "--data", str(toy_folder), "--out", str(out), "--width", "small", "--window", "96x64"]
+    assert main([*words, "--batch", "2", "--images", "4", "--workers", "1"]) == 0
+    assert (out / "detector.onnx").stat().st_size < 6_000_000
+    assert main(["export", "--run", str(out), "--onnx", str(tmp_path / "again.onnx")]) == 0
+    assert (tmp_path / "again.onnx").read_bytes() == (out / "detector.onnx").read_bytes()
+    assert main(["score", "--model", str(out / "detector.onnx"), "--data", str(toy_folder)]) == 0
+    assert "| 0.25 (asked for) |" in capsys.readouterr().out
+    assert main(words) == 1
+    assert "--resume" in capsys.readouterr().err
+
+
+def test_the_letterbox_is_the_daemons() -> None:
+    canvas, gain, offset = letterboxed(np.full((540, 960, 3), 200, np.uint8), 640, 384)
+    assert gain == pytest.approx(2 / 3)
+    assert offset == (0, 12)
+    assert (canvas[:12] == 114).all() and (canvas[12:372] == 200).all() and (canvas[372:] == 114).all()
