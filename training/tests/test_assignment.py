@@ -79,8 +79,8 @@ def test_predictions_that_follow_their_losses_end_on_the_objects() -> None:
     raw[:, 4:] = -3
     raw.requires_grad_()
     boxes = ((20.0, 20.0, 70.0, 60.0), (80.0, 40.0, 110.0, 70.0))
-    optimiser = torch.optim.Adam([raw], 0.1)
-    for _ in range(80):
+    optimiser = torch.optim.Adam([raw], 0.15)
+    for _ in range(50):
         optimiser.zero_grad()
         detection_losses(raw, targets(*boxes), CELLS).total.backward()
         optimiser.step()

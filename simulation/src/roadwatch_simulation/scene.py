@@ -39,9 +39,9 @@ class Environment:
         direction = (level * math.cos(azimuth), level * math.sin(azimuth), math.sin(elevation))
         varied = {
             "sun": {},
-            "overcast": {"sun": 0.0, "sky": 0.95, "haze_per_m": 0.0022},
+            "overcast": {"sun": 0.0, "sky": 0.95, "haze_per_m": 0.0014},
             "dusk": {"sun": 1.1, "sky": 0.45, "warmth": 0.9, "headlights": True},
-            "wet": {"sun": 0.0, "sky": 0.75, "haze_per_m": 0.004, "wetness": 0.85, "headlights": True},
+            "wet": {"sun": 0.0, "sky": 0.75, "haze_per_m": 0.0028, "wetness": 0.85, "headlights": True},
         }[self.light]
         return Light(direction, seed=self.seed, **varied)
 

@@ -8,7 +8,8 @@ import bpy
 import mathutils
 import numpy as np
 
-from ..model import Camera, Instance, Model
+from ..light.buffers import distinct_materials
+from ..model import Camera, Instance, Material, Model
 from .nodes import Conditions, build_material
 
 SENSOR_WIDTH_MM = 36.0
@@ -22,6 +23,7 @@ class Stage:
 
     def __init__(self, scene: bpy.types.Scene) -> None:
         self._scene = scene
+        self._materials: dict[Material, bpy.types.Material] = {}
         self._meshes: dict[int, tuple[Model, bpy.types.Mesh]] = {}
         self._conditions: Conditions | None = None
         self._objects: list[bpy.types.Object] = []
@@ -40,28 +42,37 @@ class Stage:
                 self._objects.append(made)
 
     def _forget_unused(self, instances: Sequence[Instance], conditions: Conditions) -> None:
-        """Drops meshes of models that are gone, and all of them when materials look different now."""
-        wanted = {id(instance.model) for instance in instances} if conditions == self._conditions else set()
-        self._conditions = conditions
+        """Drops meshes of models that are gone, and everything when materials look different now."""
+        wanted = {id(instance.model) for instance in instances}
+        if conditions != self._conditions:
+            self._conditions = conditions
+            wanted = set()
         for key in [key for key in self._meshes if key not in wanted]:
             _, mesh = self._meshes.pop(key)
-            materials = list(mesh.materials)
             bpy.data.meshes.remove(mesh)
-            for material in materials:
+        if not wanted:
+            for material in self._materials.values():
                 bpy.data.materials.remove(material)
+            self._materials.clear()
 
     def _mesh(self, model: Model) -> bpy.types.Mesh:
         key = id(model)
         if key not in self._meshes:
-            mesh = build_mesh(model)
-            for material in model.materials:
-                mesh.materials.append(build_material(material, self._conditions))
+            distinct, chosen = distinct_materials(model)
+            mesh = build_mesh(model, chosen)
+            for material in distinct:
+                mesh.materials.append(self._material(material))
             self._meshes[key] = (model, mesh)
         return self._meshes[key][1]
 
+    def _material(self, material: Material) -> bpy.types.Material:
+        if material not in self._materials:
+            self._materials[material] = build_material(material, self._conditions)
+        return self._materials[material]
 
-def build_mesh(model: Model) -> bpy.types.Mesh:
-    """The model's triangles with their own corner normals."""
+
+def build_mesh(model: Model, material_of_triangle: np.ndarray) -> bpy.types.Mesh:
+    """The model's triangles with their own corner normals; `material_of_triangle` is int32 (n,)."""
     arrays = model.mesh
     count = len(arrays.positions)
     mesh = bpy.data.meshes.new(model.label)
@@ -71,7 +82,7 @@ def build_mesh(model: Model) -> bpy.types.Mesh:
     mesh.loops.foreach_set("vertex_index", np.arange(3 * count, dtype=np.int32))
     mesh.polygons.add(count)
     mesh.polygons.foreach_set("loop_start", np.arange(0, 3 * count, 3, dtype=np.int32))
-    mesh.polygons.foreach_set("material_index", np.ascontiguousarray(arrays.materials, dtype=np.int32))
+    mesh.polygons.foreach_set("material_index", np.ascontiguousarray(material_of_triangle, dtype=np.int32))
     mesh.polygons.foreach_set("use_smooth", np.ones(count, dtype=bool))
     mesh.update(calc_edges=True)
     mesh.normals_split_custom_set(arrays.normals.reshape(-1, 3).astype(float).tolist())

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import moderngl
 import numpy as np
 
-from ..model import Model, Surface
+from ..model import Material, Model, Surface
 
 # Position, normal, then one word: material in the low 16 bits, part above.
 VERTEX_DTYPE = np.dtype([("position", "<f4", 3), ("normal", "<f4", 3), ("tag", "<u4")])
@@ -82,21 +82,28 @@ def is_switched(material_name: str) -> bool:
     return any(word in material_name.lower() for word in SWITCHED_WORDS)
 
 
-def _material_texels(model: Model) -> np.ndarray:
+def distinct_materials(model: Model) -> tuple[tuple[Material, ...], np.ndarray]:
+    """The model's materials without repeats, and each triangle's index among them, int32 (n,)."""
+    numbers: dict[Material, int] = {}
+    slots = [numbers.setdefault(material, len(numbers)) for material in model.materials]
+    return tuple(numbers), np.array(slots, dtype=np.int32)[model.mesh.materials]
+
+
+def _material_texels(materials: tuple[Material, ...]) -> np.ndarray:
     """Two texels a material: colour and gloss; f0, metallic, emission and whether it is switched."""
-    texels = np.zeros((2, len(model.materials), 4), dtype=np.float32)
-    for index, material in enumerate(model.materials):
+    texels = np.zeros((2, len(materials), 4), dtype=np.float32)
+    for index, material in enumerate(materials):
         texels[0, index] = (*material.colour, material.gloss)
         texels[1, index] = (material.f0, material.metallic, material.emission, float(is_switched(material.name)))
     return texels
 
 
-def _packed_vertices(model: Model, order: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _packed_vertices(model: Model, chosen: np.ndarray, order: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     mesh = model.mesh
     corners = np.zeros((len(order), 3), dtype=VERTEX_DTYPE)
     corners["position"] = mesh.positions[order]
     corners["normal"] = mesh.normals[order]
-    tags = mesh.materials.astype(np.uint32) | (mesh.parts.astype(np.uint32) << 16)
+    tags = chosen.astype(np.uint32) | (mesh.parts.astype(np.uint32) << 16)
     corners["tag"] = tags[order][:, None]
     raw = corners.reshape(-1).view(np.dtype((np.void, VERTEX_DTYPE.itemsize)))
     unique, inverse = np.unique(raw, return_inverse=True)
@@ -132,11 +139,11 @@ def _lamps(model: Model) -> tuple[Lamp, ...]:
 
 def upload(context: moderngl.Context, model: Model) -> ModelBuffers:
     """Puts a model's triangles, sorted by surface, and its materials on the graphics side."""
-    table = np.array([int(material.surface) for material in model.materials], dtype=np.int32)
-    surfaces = table[model.mesh.materials]
+    distinct, chosen = distinct_materials(model)
+    surfaces = np.array([int(material.surface) for material in distinct], dtype=np.int32)[chosen]
     order = np.argsort(surfaces, kind="stable")
-    vertices, indices = _packed_vertices(model, order)
-    texels = _material_texels(model)
+    vertices, indices = _packed_vertices(model, chosen, order)
+    texels = _material_texels(distinct)
     materials = context.texture((texels.shape[1], 2), 4, texels.tobytes(), dtype="f4")
     materials.filter = (moderngl.NEAREST, moderngl.NEAREST)
     points = model.mesh.positions.reshape(-1, 3).astype(float)

@@ -123,11 +123,11 @@ class _Planner:
     def fill(self) -> None:
         """Proposes everything; what does not fit is left out."""
         self._with_the_ego()
+        self._cyclists(9)
         self._oncoming(12)
         self._crossing(14)
         self._turning(5)
         self._parked(0.75)
-        self._cyclists(9)
         self._people(80)
 
     def _one_of(self, looks: tuple[Look, ...]) -> Look:

@@ -153,7 +153,7 @@ def _half_section(frame: Frame, u: float) -> np.ndarray:
     roof, belt = frame.roof(u), frame.belt(u)
     floor = frame.floor(u)
     sill, arched = _sill_height(frame, u, floor)
-    sill = min(sill, belt - 0.05)
+    sill = min(sill, belt - 0.03)
     well = max(floor, 0.55 * sill) if arched else floor
     cabin = float(np.clip((roof - belt) / (0.97 * height - belt), 0.0, 1.0))
     edge = min(1.0, (roof - belt) / (0.05 * height))

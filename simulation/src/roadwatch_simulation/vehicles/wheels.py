@@ -38,7 +38,11 @@ def draw_wheels(rng: np.random.Generator, plain: float = 0.2) -> WheelDesign:
 
 
 def add_wheel(
-    assembly: Assembly, design: WheelDesign, place: tuple[float, float, float], width_m: float, part: str | None
+    assembly: Assembly,
+    design: WheelDesign,
+    place: tuple[float, float, float],
+    width_m: float,
+    part: str | None,
 ) -> None:
     """Adds a wheel whose outer face's centre is at `place` (m); left of the car if y is above 0.
 
