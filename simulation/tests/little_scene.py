@@ -30,7 +30,8 @@ def plane(corners, surface=Surface.PLAIN, colour=(0.3, 0.3, 0.3)):
     normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
     normals = np.broadcast_to(normal / np.linalg.norm(normal), positions.shape).astype(np.float32)
     zeros = np.zeros(2, dtype=np.int32)
-    return Model("plane", Mesh(positions, normals, zeros, zeros), (Material("plane", colour, surface=surface),))
+    mesh = Mesh(positions, normals, zeros, zeros)
+    return Model("plane", mesh, (Material("plane", colour, surface=surface),))
 
 
 def ground(surface=Surface.ASPHALT):
@@ -40,3 +41,9 @@ def ground(surface=Surface.ASPHALT):
 def wall(x_m, y_low_m, y_high_m):
     corners = [(x_m, y_low_m, 0), (x_m, y_high_m, 0), (x_m, y_high_m, 3), (x_m, y_low_m, 3)]
     return Instance(plane(corners), np.eye(4))
+
+
+def mask_box(mask):
+    """Edges of the true pixels: left, top, right, bottom."""
+    columns, rows = np.flatnonzero(mask.any(axis=0)), np.flatnonzero(mask.any(axis=1))
+    return (columns[0], rows[0], columns[-1] + 1, rows[-1] + 1)

@@ -83,7 +83,8 @@ def test_picture_names_what_there_is(scene, tmp_path, capsys, options, message):
 
 
 def test_training_writes_pictures_and_labels(tmp_path):
-    assert main(["training", "--seed", "2", "--count", "1", "--first", "4", "-o", str(tmp_path / "made")]) == 0
+    assert main(["training", "--seed", "2", "--count", "1", "--first", "4", "-o",
+        str(tmp_path / "made")]) == 0
     assert (tmp_path / "made/images/000004.jpg").exists()
 
 

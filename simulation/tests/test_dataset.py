@@ -62,7 +62,8 @@ def test_a_dataset_holds_everything_and_nothing_else(scene, tmp_path):
 def test_truth_is_in_each_cameras_own_moment(scene, tmp_path):
     write_dataset(scene, tmp_path / "made")
     truth = lines(tmp_path / "made/truth.jsonl")
-    assert [(line["frame"], line["camera"]) for line in truth] == [(0, "front"), (0, "left"), (1, "front"), (1, "left")]
+    assert [(line["frame"], line["camera"]) for line in truth] == [(0, "front"), (0, "left"), (1, "front"),
+        (1, "left")]
     at = {line["camera"]: line["objects"] for line in truth if line["frame"] == 1}
     driver = {camera: next(o for o in objects if o["id"] == "1") for camera, objects in at.items()}
     assert driver["front"]["center_base_m"][0] == pytest.approx(12.0 + 8.0 * 0.1371, abs=1e-3)
@@ -122,6 +123,16 @@ def test_clips_hold_every_frame_at_the_rate_and_repeat_exactly(scene, tmp_path):
     assert times == pytest.approx([0.0, 0.1])
 
 
+def test_truth_beside_clips_holds_only_parts_that_are_seen(scene, tmp_path):
+    write_clips_dataset(scene, tmp_path / "clips")
+    write_dataset(scene, tmp_path / "images")
+    lean, full = lines(tmp_path / "clips/truth.jsonl"), lines(tmp_path / "images/truth.jsonl")
+    for few, all_ in zip(lean, full, strict=True):
+        for one, other in zip(few["objects"], all_["objects"], strict=True):
+            assert all(part["visible"] for part in one["parts"])
+            assert one["silhouette_px"] == other["silhouette_px"]
+
+
 def test_a_clip_of_nothing_or_of_odd_size_is_refused(tmp_path):
     with pytest.raises(SimulationError, match="holds no .jpg"):
         encode_clip(tmp_path, tmp_path / "a.mp4", 10.0)
@@ -133,7 +144,8 @@ def test_a_clip_of_nothing_or_of_odd_size_is_refused(tmp_path):
 def test_training_pictures_keep_their_number_and_bytes_whatever_the_range(tmp_path):
     write_training_set(TrainingRange(3, 0, 2), tmp_path / "all")
     write_training_set(TrainingRange(3, 1, 1), tmp_path / "second")
-    assert (tmp_path / "all/images/000001.jpg").read_bytes() == (tmp_path / "second/images/000001.jpg").read_bytes()
+    assert (tmp_path / "all/images/000001.jpg").read_bytes() == (
+        tmp_path / "second/images/000001.jpg").read_bytes()
     labels = lines(tmp_path / "all/labels.jsonl")
     assert [line["image"] for line in labels] == ["images/000000.jpg", "images/000001.jpg"]
     assert labels[1] == lines(tmp_path / "second/labels.jsonl")[0]

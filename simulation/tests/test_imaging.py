@@ -42,7 +42,8 @@ def test_a_stop_doubles_the_light():
 
 def test_white_balance_scales_blue_green_red():
     grey = np.full((8, 8, 3), 90, dtype=np.uint8)
-    blue, green, red = apply(grey, Imaging(noise=0.0, white_balance=(0.8, 1.0, 1.2)), np.random.default_rng(1))[0, 0]
+    imaging = Imaging(noise=0.0, white_balance=(0.8, 1.0, 1.2))
+    blue, green, red = apply(grey, imaging, np.random.default_rng(1))[0, 0]
     assert blue < green < red
 
 

@@ -5,7 +5,7 @@ import hashlib
 
 import numpy as np
 import pytest
-from little_scene import HEIGHT, NOON, WIDTH, camera, ground, pose, wall
+from little_scene import HEIGHT, NOON, WIDTH, camera, ground, mask_box, pose, wall
 
 from roadwatch_simulation import catalogue
 from roadwatch_simulation.errors import SimulationError
@@ -32,11 +32,6 @@ def box_of(points_px):
     low, high = points_px[:, :2].min(axis=0) + 0.5, points_px[:, :2].max(axis=0) + 0.5
     size = (WIDTH, HEIGHT)
     return (*np.clip(low, 0, size), *np.clip(high, 0, size))
-
-
-def mask_box(mask):
-    columns, rows = np.flatnonzero(mask.any(axis=0)), np.flatnonzero(mask.any(axis=1))
-    return (columns[0], rows[0], columns[-1] + 1, rows[-1] + 1)
 
 
 @pytest.mark.parametrize("place", [(9.0, 1.0, 0.4), (14.0, -3.0, 2.9), (25.0, 2.0, -1.2), (7.0, 4.5, 1.5)])
@@ -131,7 +126,8 @@ def test_the_sun_throws_a_shadow_and_an_overcast_sky_does_not(renderer):
     patch = (slice(int(y) - 1, int(y) + 2), slice(int(x) - 4, int(x) + 5))
 
     def darkening(light):
-        with_van, bare = (renderer.render(these, camera(), light).image_bgr[patch] for these in (things, things[:1]))
+        with_van = renderer.render(things, camera(), light).image_bgr[patch]
+        bare = renderer.render(things[:1], camera(), light).image_bgr[patch]
         return with_van.mean() / bare.mean()
 
     assert darkening(low_sun) < 0.75

@@ -23,11 +23,13 @@ def test_places_are_the_same_for_the_same_seed_and_differ_otherwise(kind):
     first = build_place(kind, 3)
     build_place.cache_clear()
     again, other = build_place(kind, 3), build_place(kind, 4)
-    assert [len(i.model.mesh.positions) for i in first.instances] == [len(i.model.mesh.positions) for i in again.instances]
+    assert [len(i.model.mesh.positions) for i in first.instances] == [len(i.model.mesh.positions)
+        for i in again.instances]
     for one, two in zip(first.instances, again.instances, strict=True):
         np.testing.assert_array_equal(one.model.mesh.positions, two.model.mesh.positions)
         np.testing.assert_array_equal(one.world_from_model, two.world_from_model)
-    assert [len(i.model.mesh.positions) for i in first.instances] != [len(i.model.mesh.positions) for i in other.instances]
+    assert [len(i.model.mesh.positions) for i in first.instances] != [len(i.model.mesh.positions)
+        for i in other.instances]
 
 
 @pytest.mark.parametrize("kind", ENVIRONMENT_KINDS)
@@ -35,7 +37,8 @@ def test_places_stay_within_what_the_light_renderer_draws_quickly(kind):
     for seed in range(3):
         place = build_place(kind, seed)
         assert sum(len(instance.model.mesh.positions) for instance in place.instances) < 100_000
-        assert all(instance.object_id == 0 and instance.model.object_class is None for instance in place.instances)
+        assert all(instance.object_id == 0 and instance.model.object_class is None
+            for instance in place.instances)
 
 
 @pytest.mark.parametrize("kind", ENVIRONMENT_KINDS)
@@ -55,7 +58,8 @@ def test_a_training_scene_is_the_same_for_the_same_seed_whatever_came_before():
     first = training_scene(5, 9)
     training_scene(5, 2)
     again = training_scene(5, 9)
-    assert [(thing.kind, thing.seed) for thing in first.objects] == [(thing.kind, thing.seed) for thing in again.objects]
+    assert [(thing.kind, thing.seed) for thing in first.objects] == [(thing.kind, thing.seed)
+        for thing in again.objects]
     np.testing.assert_array_equal(poses(first, 0), poses(again, 0))
     assert first.cameras == again.cameras
     assert first.light == again.light
@@ -94,7 +98,8 @@ def test_the_whole_car_is_in_the_picture_on_every_cell_of_the_grid():
         pose = poses(scene, frame)[0]
         length, width, height = scene.objects[0].model.size_lwh_m
         signs = (-0.5, 0.5)
-        corners = np.array([(length * x, width * y, height * z) for x in signs for y in signs for z in (0, 1)])
+        corners = np.array([(length * x, width * y, height * z) for x in signs for y in signs
+            for z in (0, 1)])
         pixels = camera.project(corners @ pose[:3, :3].T + pose[:3, 3])
         assert (pixels[:, 0] > 0).all()
         assert (pixels[:, 0] < camera.width_px).all()
@@ -110,6 +115,11 @@ def test_traffic_moves_around_the_rig_and_never_touches():
     for frame in (0, 12, 23):
         body = Footprint(ego[frame].x_m, ego[frame].y_m, ego[frame].yaw_rad, 4.8, 2.0)
         assert not any(thing.footprint(scene.time_s(frame)).overlaps(body) for thing in scene.objects)
+
+
+def test_a_short_drive_is_the_beginning_of_a_longer_one():
+    short, longer = build_scenario("traffic", 2, 1), build_scenario("traffic", 2, 24)
+    np.testing.assert_array_equal(poses(short, 0), poses(longer, 0))
 
 
 def test_unknown_scenarios_and_empty_ones_are_refused():

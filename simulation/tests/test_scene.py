@@ -50,14 +50,17 @@ def test_example_scenes_are_sound():
 def test_unknown_keys_are_refused_with_their_place(tmp_path):
     found = mistakes(tmp_path, HEAD.replace('kind = "plain"', 'kind = "plain"\nweather = "rain"'))
     assert found == [
-        "scene.toml: [environment] weather: unknown key; known: kind, seed, light, sun_azimuth_deg, sun_elevation_deg"
+        "scene.toml: [environment] weather: unknown key; "
+        "known: kind, seed, light, sun_azimuth_deg, sun_elevation_deg"
     ]
 
 
 def test_all_mistakes_are_reported_together(tmp_path):
-    text = HEAD.replace("frames = 3", "frames = 0").replace('"plain"', '"beach"') + '[[object]]\nkind = "tank"\n'
+    text = HEAD.replace("frames = 3", "frames = 0").replace('"plain"',
+        '"beach"') + '[[object]]\nkind = "tank"\n'
     found = "\n".join(mistakes(tmp_path, text))
-    for part in ("frames: is 0", "`beach` does not exist", "[[object]] 1 kind: `tank` does not exist", "`waypoints`"):
+    for part in ("frames: is 0", "`beach` does not exist", "[[object]] 1 kind: `tank` does not exist",
+        "`waypoints`"):
         assert part in found
 
 
@@ -67,7 +70,8 @@ def test_a_rig_without_cameras_is_refused(tmp_path):
 
 
 def test_camera_names_are_unique(tmp_path):
-    assert mistakes(tmp_path, HEAD + CAMERA) == ["scene.toml: [[rig.camera]] 2 name: `front` is the name of camera 1 already"]
+    assert mistakes(tmp_path,
+        HEAD + CAMERA) == ["scene.toml: [[rig.camera]] 2 name: `front` is the name of camera 1 already"]
 
 
 @pytest.mark.parametrize("name", ["scene", "a__b", "1st", "left-front"])
@@ -118,7 +122,8 @@ def test_a_rig_file_is_read_beside_the_scene(tmp_path):
 
 def test_a_camera_looks_where_its_angles_say():
     left_and_down = mount("a", (64, 48), 50.0, (0, 0, 0), yaw_deg=90.0, pitch_deg=10.0).base_from_camera()
-    np.testing.assert_allclose(left_and_down[:3, 2], [0.0, math.cos(math.radians(10)), -math.sin(math.radians(10))], atol=1e-8)
+    np.testing.assert_allclose(left_and_down[:3, 2],
+        [0.0, math.cos(math.radians(10)), -math.sin(math.radians(10))], atol=1e-8)
     level = mount("b", (64, 48), 50.0, (0, 0, 0)).base_from_camera()
     np.testing.assert_allclose(level[:3, :3], [[0, 0, 1], [-1, 0, 0], [0, -1, 0]], atol=1e-8)
 

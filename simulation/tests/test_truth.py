@@ -63,7 +63,7 @@ def test_base_link_moves_with_the_vehicle(renderer):
 @pytest.mark.parametrize("camera_yaw_rad", [0.0, 0.4, -0.3])
 @pytest.mark.parametrize("heading_rad", [0.0, 1.2, -2.5, 3.0])
 def test_rotation_y_is_kittis(renderer, heading_rad, camera_yaw_rad):
-    """About the optical y axis, zero along the camera's x: a car heading along the optical axis has -90 degrees."""
+    """About the optical y axis, zero along x: a car that heads along the optical axis has -90 degrees."""
     place = pose(*(12.0 * np.array([np.cos(camera_yaw_rad), np.sin(camera_yaw_rad)])), heading_rad)
     car = Instance(catalogue.build("sedan", 3), place, object_id=1)
     (found,) = truth_of(renderer, [car], turned_camera(camera_yaw_rad))

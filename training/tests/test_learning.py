@@ -35,9 +35,9 @@ def learnt(toy_folder: Path) -> DetectorNetwork:
     made = batches(store, BatchPlan(5, 8, framing, CALM), first=0, workers=0)
     network = DetectorNetwork(TINY).to(memory_format=torch.channels_last)
     cells = Cells.of_input(192, 128)
-    steps = 120
-    optimiser = torch.optim.AdamW(network.parameters(), 4e-3)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, 4e-3, total_steps=steps)
+    steps = 90
+    optimiser = torch.optim.AdamW(network.parameters(), 5e-3)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, 5e-3, total_steps=steps)
     for _ in range(steps):
         batch = next(made)
         losses = detection_losses(network(batch.network_input()), batch.targets, cells)
@@ -70,7 +70,9 @@ def test_the_exported_graph_computes_what_the_network_does(learnt: DetectorNetwo
     with torch.no_grad():
         expected = DecodedNetwork(learnt.eval(), 640, 384)(torch.from_numpy(images)).numpy()
     assert found.shape == (2, 10, 5040)
-    np.testing.assert_allclose(found, expected, rtol=1e-3, atol=1e-3)
+    # Filters are stored with 16 bits: a little of a pixel, less of a score.
+    np.testing.assert_allclose(found[:, :4], expected[:, :4], atol=0.5)
+    np.testing.assert_allclose(found[:, 4:], expected[:, 4:], atol=5e-3)
     assert detector.class_names == ("person", "bicycle", "car", "motorcycle", "bus", "truck")
 
 

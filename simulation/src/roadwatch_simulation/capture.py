@@ -43,7 +43,9 @@ class Studio:
         self._kind = renderer
         self._renderers: dict[tuple[int, int], Renderer] = {}
 
-    def capture(self, scene: Scene, frame: int, camera_index: int, jpeg_quality: int | None = None) -> Capture:
+    def capture(
+        self, scene: Scene, frame: int, camera_index: int, jpeg_quality: int | None = None
+    ) -> Capture:
         """What a camera of the scene delivers at a frame; the same for the same arguments."""
         mount = scene.cameras[camera_index]
         world_from_base, objects = scene.at_camera(frame, mount)
@@ -65,11 +67,6 @@ class Studio:
             from .light import LightRenderer
 
             return LightRenderer(width_px, height_px)
-        try:
-            from .blender import BlenderRenderer
-        except ImportError as error:
-            raise SimulationError(
-                f"the blender renderer is not installed ({error}); install this package with `[blender]` under "
-                "CPython 3.11, or use the light renderer"
-            ) from error
+        from .blender import BlenderRenderer
+
         return BlenderRenderer(width_px, height_px)

@@ -17,7 +17,7 @@ A scene is a TOML or JSON file, or a named scenario with a seed. The same scene 
 """
 EXAMPLES = """\
 examples:
-  roadwatch-simulate check street.toml                          is the scene sound? every mistake, with its place
+  roadwatch-simulate check street.toml                          is the scene sound? every mistake
   roadwatch-simulate picture street.toml --frame 3 -o look.png  one picture, to see what it looks like
   roadwatch-simulate render street.toml -o made/street          all frames, all cameras, with truth
   roadwatch-simulate scenario traffic --seed 4 --clips -o demo  a scenario by name, as H.264 clips
@@ -76,9 +76,13 @@ def _add_scenario(commands) -> None:
 
 
 def _add_output_options(command) -> None:
-    command.add_argument("-o", "--output", type=Path, required=True, metavar="FOLDER", help="new folder to write")
-    command.add_argument("--renderer", choices=["light", "blender"], default="light",
-                         help="light: OpenGL, fast; blender: Cycles, slow and convincing (default light)")  # fmt: skip
+    command.add_argument(
+        "-o", "--output", type=Path, required=True, metavar="FOLDER", help="new folder to write"
+    )
+    command.add_argument(
+        "--renderer", choices=["light", "blender"], default="light",
+        help="light: OpenGL, fast; blender: Cycles, slow and convincing (default light)",
+    )  # fmt: skip
     command.add_argument("--jpeg-quality", type=int, help="1 to 100 (default: the scene's imaging)")
     command.add_argument("--clips", action="store_true", help="H.264 clips instead of images, one per camera")
     command.add_argument("--crf", type=int, default=23, help="quality of clips, 0 best to 51 (default 23)")
@@ -87,12 +91,15 @@ def _add_output_options(command) -> None:
 def _add_training(commands) -> None:
     command = commands.add_parser(
         "training", help="render labelled single pictures for training a detector",
-        description="Writes images/000000.jpg and labels.jsonl. An interrupted run is taken up by the same command.",
+        description="Writes images/000000.jpg and labels.jsonl. "
+        "An interrupted run is taken up by the same command.",
     )  # fmt: skip
     command.add_argument("--seed", type=int, default=0, help="which training set (default 0)")
     command.add_argument("--first", type=int, default=0, help="number of the first picture (default 0)")
     command.add_argument("--count", type=int, required=True, help="how many pictures")
-    command.add_argument("-o", "--output", type=Path, required=True, metavar="FOLDER", help="new folder to write")
+    command.add_argument(
+        "-o", "--output", type=Path, required=True, metavar="FOLDER", help="new folder to write"
+    )
     command.add_argument("--renderer", choices=["light", "blender"], default="light")
     command.set_defaults(run=_training)
 
@@ -109,7 +116,9 @@ def _add_picture(commands) -> None:
     command.add_argument("--frame", type=int, default=0, help="which frame (default 0)")
     command.add_argument("--camera", help="which camera (default: the first)")
     command.add_argument("--renderer", choices=["light", "blender"], default="light")
-    command.add_argument("-o", "--output", type=Path, required=True, metavar="IMAGE", help="a .png or .jpg to write")
+    command.add_argument(
+        "-o", "--output", type=Path, required=True, metavar="IMAGE", help="a .png or .jpg to write"
+    )
     command.set_defaults(run=_picture)
 
 

@@ -10,7 +10,7 @@ import av
 import cv2
 import numpy as np
 
-from .dataset import new_folder, write_dataset
+from .dataset import Parts, new_folder, write_dataset
 from .errors import SimulationError
 from .progress import Report
 from .scene import Scene
@@ -23,12 +23,19 @@ UNCOMPRESSED_QUALITY = 98
 
 
 def write_clips_dataset(
-    scene: Scene, folder: Path, *, renderer: str = "light", crf: int = DEFAULT_CRF, progress: Report | None = None
+    scene: Scene, folder: Path, *, renderer: str = "light", crf: int = DEFAULT_CRF,
+    progress: Report | None = None,
 ) -> None:
-    """Renders a scene into a new folder with rig.toml, frames.jsonl, truth.jsonl and one clip per camera."""
+    """Renders a scene into a new folder with rig.toml, frames.jsonl, truth.jsonl and one clip per camera.
+
+    Clips are for keeping, so truth holds only the parts that are seen.
+    """
     with new_folder(Path(folder)) as work:
         images = work / "images"
-        write_dataset(scene, images, renderer=renderer, jpeg_quality=UNCOMPRESSED_QUALITY, progress=progress)
+        write_dataset(
+            scene, images, renderer=renderer, jpeg_quality=UNCOMPRESSED_QUALITY, progress=progress,
+            parts=Parts.SEEN,
+        )  # fmt: skip
         for mount in scene.cameras:
             encode_clip(images / mount.name, work / f"{mount.name}.mp4", scene.rate_hz, crf)
         for name in ("rig.toml", "frames.jsonl", "truth.jsonl"):

@@ -44,10 +44,13 @@ def _near_pairs(prints: list[Footprint]) -> list[tuple[int, int]]:
 def _message(scene: Scene, first: int, second: int, frame: int, prints: list[Footprint]) -> str:
     at = prints[second]
     names = [f"[[object]] {index + 1} ({scene.objects[index].name})" for index in (first, second)]
-    return f"{names[0]} and {names[1]} stand inside each other at frame {frame}, near x {at.x_m:.1f} y {at.y_m:.1f} m"
+    place = f"x {at.x_m:.1f} y {at.y_m:.1f} m"
+    return f"{names[0]} and {names[1]} stand inside each other at frame {frame}, near {place}"
 
 
-def _check_cameras(scene: Scene, frame: int, prints: list[Footprint], found: dict[tuple[int, int], str]) -> None:
+def _check_cameras(
+    scene: Scene, frame: int, prints: list[Footprint], found: dict[tuple[int, int], str]
+) -> None:
     for number, mount in enumerate(scene.cameras):
         x, y, z = scene.camera_at(frame, mount).world_from_camera[:3, 3]
         lens = Footprint(float(x), float(y), 0.0, CAMERA_CLEARANCE_M, CAMERA_CLEARANCE_M)
@@ -55,5 +58,5 @@ def _check_cameras(scene: Scene, frame: int, prints: list[Footprint], found: dic
             key = (-1 - number, index)
             height = scene.objects[index].model.size_lwh_m[2]
             if key not in found and z < height + CAMERA_CLEARANCE_M and lens.overlaps(each):
-                name = scene.objects[index].name
-                found[key] = f"[[object]] {index + 1} ({name}) stands around camera `{mount.name}` at frame {frame}"
+                thing = f"[[object]] {index + 1} ({scene.objects[index].name})"
+                found[key] = f"{thing} stands around camera `{mount.name}` at frame {frame}"

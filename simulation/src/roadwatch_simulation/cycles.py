@@ -70,7 +70,7 @@ def add_bicycle(assembly: Assembly, colour: Colour, phase: float, rng: np.random
     _add_handlebar(assembly, bars, seat)
     _add_cranks(assembly, bracket, phase, seat)
     if rng.random() < 0.5:
-        _add_carrier(assembly, rear, saddle, radius)
+        _add_carrier(assembly, rear, radius)
     assembly.add(ellipsoid(head + [0.06, 0.0, 0.02], (0.04, 0.04, 0.04), 8, 5), LAMP_LIT)
     return seat
 
@@ -95,7 +95,7 @@ def _add_cranks(assembly: Assembly, bracket: np.ndarray, phase: float, seat: Sea
         seat[f"pedal_{name}"] = pedal + np.array([0.0, 0.0, 0.02])
 
 
-def _add_carrier(assembly: Assembly, rear: np.ndarray, saddle: np.ndarray, radius: float) -> None:
+def _add_carrier(assembly: Assembly, rear: np.ndarray, radius: float) -> None:
     top = np.array([rear[0] + 0.05, 0.0, 2.0 * radius + 0.06])
     assembly.add(box(top, (0.42, 0.13, 0.015)), STEEL)
     assembly.add(merge([tube(rear + [0, y, 0], top + [0, y, 0], 0.007, 4) for y in (-0.06, 0.06)]), STEEL)
@@ -118,7 +118,7 @@ def add_motorcycle(assembly: Assembly, colour: Colour, rng: np.random.Generator)
     guard = ellipsoid(front + [0.0, 0.0, radius * 0.62], (radius * 0.9, 0.075, radius * 0.5), 12, 6)
     assembly.add(guard, paint(colour))
     (_add_scooter_body if scooter else _add_motorcycle_body)(assembly, colour, rear)
-    _add_lights(assembly, bars, rear, rng)
+    _add_lights(assembly, bars, rng)
     saddle = np.array([-0.22, 0.0, 0.80])
     seat: Seat = {"saddle": saddle}
     for name, side in (("left", 1.0), ("right", -1.0)):
@@ -158,7 +158,7 @@ def _add_scooter_body(assembly: Assembly, colour: Colour, rear: np.ndarray) -> N
     assembly.add(box(rear + [0.05, -0.13, 0.06], (0.42, 0.10, 0.16), 0.4), STEEL)
 
 
-def _add_lights(assembly: Assembly, bars: np.ndarray, rear: np.ndarray, rng: np.random.Generator) -> None:
+def _add_lights(assembly: Assembly, bars: np.ndarray, rng: np.random.Generator) -> None:
     lamp = bars + np.array([0.14, 0.0, -0.06])
     assembly.add(ellipsoid(lamp, (0.05, 0.09, 0.085), 12, 6), LAMP_LIT, "headlamp")
     assembly.add(box((-0.88, 0.0, 0.74), (0.03, 0.14, 0.06), 0.3), TAIL_BRIGHT, "taillamp")

@@ -6,6 +6,7 @@ import json
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
+from enum import Enum
 from pathlib import Path
 
 import numpy as np
@@ -17,11 +18,21 @@ from .rig import quaternion_wxyz, rig_toml
 from .scene import Scene
 
 NANOSECONDS = 1_000_000_000
+LEAST_PARTS_HEIGHT_PX = 24
+"""On lower objects no part can be told from its neighbours."""
+
+
+class Parts(Enum):
+    """Which parts of objects go into truth.jsonl."""
+
+    ALL = "all"
+    SEEN = "seen"
+    """Visible ones only, of objects at least LEAST_PARTS_HEIGHT_PX high: half the file."""
 
 
 def write_dataset(
     scene: Scene, folder: Path, *, renderer: str = "light", jpeg_quality: int | None = None,
-    progress: Report | None = None,
+    progress: Report | None = None, parts: Parts = Parts.ALL,
 ) -> None:
     """Renders every frame of every camera into a new folder, which appears only when all of it is there.
 
@@ -39,14 +50,15 @@ def write_dataset(
                 for index, mount in enumerate(scene.cameras):
                     capture = studio.capture(scene, frame, index, jpeg_quality)
                     (work / mount.name / f"{frame:04d}.jpg").write_bytes(capture.jpeg)
-                    truth.write(truth_line(frame, mount.name, capture))
+                    truth.write(truth_line(frame, mount.name, capture, parts))
                     if progress:
                         progress(frame * len(scene.cameras) + index + 1, scene.frames * len(scene.cameras))
 
 
 def frame_line(scene: Scene, frame: int) -> str:
     """A line of frames.jsonl. Stamps are seconds with all nine digits, which a float would not keep."""
-    stamps = ", ".join(f'"{mount.name}": {stamp_text(scene.stamp_ns(frame, mount))}' for mount in scene.cameras)
+    moments = {mount.name: stamp_text(scene.stamp_ns(frame, mount)) for mount in scene.cameras}
+    stamps = ", ".join(f'"{name}": {stamp}' for name, stamp in moments.items())
     world_from_base, _ = scene.at(frame)
     position = json.dumps([round(float(value), 6) for value in world_from_base[:3, 3]])
     orientation = json.dumps(list(quaternion_wxyz(world_from_base[:3, :3])))
@@ -56,9 +68,18 @@ def frame_line(scene: Scene, frame: int) -> str:
     )
 
 
-def truth_line(frame: int, camera: str, capture: Capture) -> str:
+def truth_line(frame: int, camera: str, capture: Capture, parts: Parts = Parts.ALL) -> str:
     """A line of truth.jsonl."""
-    return json.dumps({"frame": frame, "camera": camera, "objects": plain(capture.objects)}) + "\n"
+    objects = capture.objects
+    if parts is Parts.SEEN:
+        objects = [_with_seen_parts(thing) for thing in objects]
+    return json.dumps({"frame": frame, "camera": camera, "objects": plain(objects)}) + "\n"
+
+
+def _with_seen_parts(thing: dict) -> dict:
+    _, top, _, bottom = thing["silhouette_px"]
+    large = bottom - top >= LEAST_PARTS_HEIGHT_PX
+    return {**thing, "parts": [part for part in thing["parts"] if part["visible"]] if large else []}
 
 
 def stamp_text(stamp_ns: int) -> str:

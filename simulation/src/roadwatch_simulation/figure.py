@@ -118,7 +118,7 @@ def _add_trunk(assembly: Assembly, joints: Joints, outfit: Outfit) -> None:
         (hem, 0.062 * h * g * flare, 0.094 * h * g * flare, 0.0),
         (0.0, 0.066 * h * g, 0.096 * h * g, 0.0),
         (0.35 * length, 0.060 * h * g, 0.086 * h * g, 0.004 * h),
-        (0.68 * length, 0.068 * h * g, 0.104 * h * g, 0.0),
+        (0.68 * length, 0.068 * h * g, 0.106 * h * g, 0.0),
         (0.86 * length, 0.056 * h * g, 0.106 * h * g, -0.006 * h),
         (0.95 * length, 0.042 * h * g, 0.066 * h * g, -0.006 * h),
         (1.0 * length, 0.030 * h, 0.036 * h, 0.0),
@@ -143,7 +143,7 @@ def _add_head(assembly: Assembly, joints: Joints, outfit: Outfit) -> None:
         cover = ellipsoid(head + [-0.01, 0.0, size * 0.22], (size * 1.12, size * 0.92, size * 0.98), 14, 8)
         assembly.add(cover, outfit.helmet)
         return
-    hair = ellipsoid(head + [-size * 0.16, 0.0, size * 0.16], (size * 0.80, size * 0.74, size * 0.94), 14, 8)
+    hair = ellipsoid(head + [-size * 0.26, 0.0, size * 0.20], (size * 0.76, size * 0.72, size * 0.90), 14, 8)
     assembly.add(hair, outfit.hair)
     if outfit.long_hair:
         radii = (size * 0.42, size * 0.72, size * 1.15)

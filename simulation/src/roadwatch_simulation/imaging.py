@@ -73,7 +73,11 @@ def _aberrated(image: np.ndarray, aberration: float) -> np.ndarray:
     for channel, scale in ((0, 1.0 - aberration), (2, 1.0 + aberration)):
         matrix = np.array([[scale, 0.0, middle_x * (1.0 - scale)], [0.0, scale, middle_y * (1.0 - scale)]])
         channels[channel] = cv2.warpAffine(
-            channels[channel], matrix, (width, height), flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE
+            channels[channel],
+            matrix,
+            (width, height),
+            flags=cv2.INTER_LINEAR,
+            borderMode=cv2.BORDER_REPLICATE,
         )
     return cv2.merge(channels)
 

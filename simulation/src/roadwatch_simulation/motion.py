@@ -91,7 +91,9 @@ def standing(x_m: float, y_m: float, yaw_rad: float) -> Path:
     return Path((Waypoint(0.0, x_m, y_m, yaw_rad),))
 
 
-def straight(start: tuple[float, float], end: tuple[float, float], begin_s: float, speed_m_per_s: float) -> Path:
+def straight(
+    start: tuple[float, float], end: tuple[float, float], begin_s: float, speed_m_per_s: float
+) -> Path:
     """A thing that goes from `start` to `end` at one speed."""
     duration = math.dist(start, end) / speed_m_per_s
     return Path((Waypoint(begin_s, *start), Waypoint(begin_s + duration, *end)))

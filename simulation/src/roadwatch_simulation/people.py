@@ -89,7 +89,7 @@ def _leg(h: float, side: float, phase: float, swing: float) -> tuple[np.ndarray,
 def _arm(
     h: float, girth: float, neck: np.ndarray, side: float, phase: float, swing: float
 ) -> tuple[np.ndarray, ...]:
-    shoulder = neck + np.array([0.0, side * 0.108 * h * girth, -0.055 * h])
+    shoulder = neck + np.array([0.0, side * 0.101 * h * girth, -0.052 * h])
     forward = 0.85 * swing * np.sin(phase)
     out = side * 0.12
     elbow = shoulder + 0.175 * h * np.array([np.sin(forward), out, -np.cos(forward)])
@@ -100,7 +100,7 @@ def _arm(
 
 def _phone(h: float, girth: float, neck: np.ndarray) -> tuple[np.ndarray, ...]:
     """A right arm that holds something up in front of the face."""
-    shoulder = neck + np.array([0.0, -0.108 * h * girth, -0.055 * h])
+    shoulder = neck + np.array([0.0, -0.101 * h * girth, -0.052 * h])
     elbow = shoulder + 0.175 * h * np.array([0.25, -0.15, -0.95])
     hand = elbow + 0.150 * h * np.array([0.75, 0.25, 0.60])
     return shoulder, elbow, hand
@@ -121,7 +121,7 @@ def _riding(height: float, seat: dict[str, np.ndarray], lean: float) -> Joints:
         for hip, ankle, way in zip(hips, ankles, outward, strict=True)
     )
     toes = tuple(ankle + np.array([0.105 * h, 0.0, -0.035 * h]) for ankle in ankles)
-    shoulders = tuple(neck + np.array([0.01 * h, side * 0.108 * h, -0.035 * h]) for side, _ in sides)
+    shoulders = tuple(neck + np.array([0.01 * h, side * 0.101 * h, -0.045 * h]) for side, _ in sides)
     hands = tuple(seat[f"grip_{name}"] for _, name in sides)
     droop = [np.array([-0.2, side * 0.5, -1.0]) for side, _ in sides]
     elbows = tuple(

@@ -68,11 +68,12 @@ def quaternion_wxyz(matrix: np.ndarray) -> tuple[float, float, float, float]:
 
 
 def rig_toml(cameras: Sequence[CameraMount]) -> str:
-    """The text of `rig.toml`. Delays are not in it: the stamps of `frames.jsonl` say when each camera fired."""
-    sections = ["# Cameras of one vehicle. Poses: optical frame in base_link (x forward, y left, z up, on the ground).\n"]
+    """The text of `rig.toml`, without delays: the stamps of `frames.jsonl` say when each camera fired."""
+    sections = ["# Poses: optical frame in base_link (x forward, y left, z up, origin on the ground).\n"]
     for camera in cameras:
         numbers = {"fx": camera.fx, "fy": camera.fy, "cx": camera.cx, "cy": camera.cy}
-        lines = ["[[camera]]", f'name = "{camera.name}"', f"width = {camera.width_px}", f"height = {camera.height_px}"]
+        lines = ["[[camera]]", f'name = "{camera.name}"']
+        lines += [f"width = {camera.width_px}", f"height = {camera.height_px}"]
         lines += [f"{key} = {float(value)!r}" for key, value in numbers.items()]
         lines.append(f"position_m = {_floats(camera.position_m)}")
         lines.append(f"orientation_wxyz = {_floats(camera.orientation_wxyz)}")

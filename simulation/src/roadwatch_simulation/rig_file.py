@@ -53,20 +53,22 @@ def _cameras(tables: list[Any], where: str, mistakes: Mistakes, known) -> tuple[
     if not tables:
         mistakes.add(where, "the rig has no cameras; it needs at least one")
     mounts = [
-        _camera(Table(values, f"{where} {index}", mistakes, known)) for index, values in enumerate(tables, start=1)
+        _camera(Table(values, f"{where} {index}", mistakes, known))
+        for index, values in enumerate(tables, start=1)
     ]
     names = [camera.name for camera in mounts]
     for index, name in enumerate(names):
         if name and name in names[:index]:
-            mistakes.add(f"{where} {index + 1} name", f"`{name}` is the name of camera {names.index(name) + 1} already")
+            first = names.index(name) + 1
+            mistakes.add(f"{where} {index + 1} name", f"`{name}` is the name of camera {first} already")
     return tuple(mounts)
 
 
 def _camera(table: Table) -> CameraMount:
     name = table.text("name")
     if name and (not NAME.fullmatch(name) or name == RESERVED_NAME):
-        table.wrong("name", f"`{name}` cannot name a camera: use letters, digits and single underscores, beginning "
-                    "with a letter; `scene` is taken")  # fmt: skip
+        rule = "use letters, digits and single underscores, beginning with a letter; `scene` is taken"
+        table.wrong("name", f"`{name}` cannot name a camera: {rule}")
     width, height = (table.integer(key, least=1, most=MOST_SIDE_PX) for key in ("width", "height"))
     fx = table.number("fx", least=1.0)
     fy = table.number("fy", fx, least=1.0)

@@ -23,7 +23,7 @@ LIGHT_KINDS = ("sun", "overcast", "dusk", "wet")
 
 @dataclass(frozen=True)
 class Environment:
-    """Where a scene plays and in which light. The sun's angles are those of its place in the sky, world axes."""
+    """Where a scene plays and in which light. The sun's angles say where it stands, in world axes."""
 
     kind: str = "street"
     seed: int = 0

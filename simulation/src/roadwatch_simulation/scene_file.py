@@ -1,4 +1,4 @@
-"""Scene descriptions on disk, TOML or JSON with the same keys: read strictly, all mistakes reported together."""
+"""Scene descriptions on disk, TOML or JSON: read strictly, all mistakes reported together."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ MOST_FRAMES = 100_000
 
 
 def read_scene(file: FilePath) -> Scene:
-    """The scene in a file. Raises SimulationError with every mistake in it, one a line, each with its place."""
+    """The scene in a file. Raises SimulationError with every mistake in it, each with its place."""
     file = FilePath(file)
     mistakes = Mistakes()
     scene = _scene(Table(_load(file), "", mistakes, SCENE_KEYS), file.parent)
@@ -125,8 +125,8 @@ def _object(values: Any, index: int, layout: Layout, mistakes: Mistakes) -> Scen
 
 def _motion(table: Table, layout: Layout) -> Path:
     """A fixed place, a lane with a speed, or waypoints: exactly one of them."""
-    ways = [("waypoints", "waypoints" in table), ("lane", "lane" in table), ("x_m", "x_m" in table or "y_m" in table)]
-    given = [name for name, there in ways if there]
+    ways = {"waypoints": ("waypoints",), "lane": ("lane",), "x_m": ("x_m", "y_m")}
+    given = [name for name, keys in ways.items() if any(key in table for key in keys)]
     if len(given) != 1:
         said = " and ".join(f"`{name}`" for name in given) or "none"
         table.wrong("place", f"give one of `x_m` with `y_m`, `lane`, or `waypoints`; here: {said}")

@@ -1,4 +1,4 @@
-"""Reads one table of a description strictly: every key known, every value of its kind, every mistake noted."""
+"""Reads one table of a description strictly: keys known, values of their kind, every mistake noted."""
 
 from __future__ import annotations
 
@@ -77,7 +77,9 @@ class Table:
             return value
         return default if default is not None else (among[0] if among else "")
 
-    def numbers(self, key: str, count: int, default: tuple[float, ...] | None = None) -> tuple[float, ...] | None:
+    def numbers(
+        self, key: str, count: int, default: tuple[float, ...] | None = None
+    ) -> tuple[float, ...] | None:
         """A list of so many finite numbers; None where it is missing and the default is None."""
         value = self._values.get(key)
         if value is None:

@@ -89,9 +89,10 @@ class TrafficPlan:
 
 
 def passing(
-    start: tuple[float, float], end: tuple[float, float], along_m: float, speed_m_per_s: float, duration_s: float
+    start: tuple[float, float], end: tuple[float, float], along_m: float, speed_m_per_s: float,
+    duration_s: float,
 ) -> Path | None:
-    """Steady movement along a line, `along_m` from its start at time 0; None where it would run past the end."""
+    """Steady movement along a line, `along_m` from its start at time 0; None where it runs past the end."""
     length = math.dist(start, end)
     reach = along_m + speed_m_per_s * duration_s
     if not 0.0 <= along_m <= length or reach > length:
@@ -108,7 +109,7 @@ def turning(
     entry: tuple[float, float], exit_: tuple[float, float], entry_yaw: float, exit_yaw: float, at_s: float,
     speed_m_per_s: float, duration_s: float,
 ) -> Path:
-    """Movement that enters a bend at `entry` at the time `at_s` and leaves it at `exit_`, at one speed throughout."""
+    """Movement at one speed that enters a bend at `entry`, at the time `at_s`, and leaves it at `exit_`."""
     bend = _bend(np.array(entry), np.array(exit_), entry_yaw, exit_yaw)
     along = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(bend, axis=0), axis=1)))
     before = np.array([math.cos(entry_yaw), math.sin(entry_yaw)])
@@ -125,7 +126,9 @@ def turning(
     return Path(tuple(waypoints))
 
 
-def _bend(entry: np.ndarray, exit_: np.ndarray, entry_yaw: float, exit_yaw: float, count: int = 14) -> np.ndarray:
+def _bend(
+    entry: np.ndarray, exit_: np.ndarray, entry_yaw: float, exit_yaw: float, count: int = 14
+) -> np.ndarray:
     """A quadratic curve whose ends point along the two directions: its handle is where their lines meet."""
     first = np.array([math.cos(entry_yaw), math.sin(entry_yaw)])
     second = np.array([math.cos(exit_yaw), math.sin(exit_yaw)])

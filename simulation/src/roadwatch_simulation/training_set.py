@@ -75,7 +75,8 @@ def _take_up(work: Path, wanted: TrainingRange) -> int:
     if not noted.exists():
         noted.write_text(settings)
     elif noted.read_text() != settings:
-        raise SimulationError(f"`{work}` holds an unfinished run with other settings; finish that, or remove it")
+        raise SimulationError(
+            f"`{work}` holds an unfinished run with other settings; finish that, or remove it")
     labels = work / LABELS
     if not labels.exists():
         return 0

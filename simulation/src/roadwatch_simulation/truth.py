@@ -22,7 +22,8 @@ PART_SEEN_SHARE = 0.3
 PIXEL_DIGITS = 2
 METRE_DIGITS = 4
 RADIAN_DIGITS = 5
-CUBOID_EDGES = ((0, 1), (2, 3), (4, 5), (6, 7), (0, 2), (1, 3), (4, 6), (5, 7), (0, 4), (1, 5), (2, 6), (3, 7))
+# Pairs of corners, in the order of `_cuboid_corners`, that an edge of the cuboid joins: one axis differs.
+CUBOID_EDGES = tuple((first, first | axis) for axis in (1, 2, 4) for first in range(8) if not first & axis)
 # Models live as long as their scene; more than this many at once is unusual.
 CACHED_MODELS = 512
 
@@ -45,7 +46,8 @@ def object_truth(
     for instance in instances:
         object_id = instance.object_id
         if object_id > 0 and instance.model.object_class and object_id in rendered.silhouettes_px:
-            objects.append(_one_object(instance, camera, rendered, base_from_world, object_id not in moving_ids))
+            stationary = object_id not in moving_ids
+            objects.append(_one_object(instance, camera, rendered, base_from_world, stationary))
     return sorted(objects, key=lambda found: float(np.linalg.norm(found["center_camera_m"])))
 
 
@@ -107,7 +109,8 @@ def cuboid_box(instance: Instance, camera: Camera) -> tuple[Box, float]:
 def _cuboid_corners(instance: Instance) -> np.ndarray:
     length, width, height = instance.model.size_lwh_m
     signs = (-0.5, 0.5)
-    local = np.array([(length * x, width * y, height * z, 1.0) for x in signs for y in signs for z in (0.0, 1.0)])
+    heights = (0.0, height)
+    local = np.array([(length * x, width * y, z, 1.0) for x in signs for y in signs for z in heights])
     return (local @ np.asarray(instance.world_from_model, dtype=float).T)[:, :3]
 
 
@@ -135,7 +138,8 @@ def _mask_box(mask: np.ndarray, box: Box) -> list[float] | None:
     if len(columns) == 0:
         return None
     left, top = box[0], box[1]
-    return [left + float(columns[0]), top + float(rows[0]), left + float(columns[-1] + 1), top + float(rows[-1] + 1)]
+    right, bottom = left + float(columns[-1] + 1), top + float(rows[-1] + 1)
+    return [left + float(columns[0]), top + float(rows[0]), right, bottom]
 
 
 def _parts(instance: Instance, camera: Camera, parts_seen: np.ndarray, silhouette_box: Box) -> list[dict]:
@@ -187,7 +191,8 @@ def _part_points(model: Model) -> dict[int, np.ndarray]:
 def _part_points_of(key: _ByIdentity) -> dict[int, np.ndarray]:
     mesh = key.model.mesh
     numbers = [int(number) for number in np.unique(mesh.parts) if number > 0]
-    return {n: np.unique(mesh.positions[mesh.parts == n].reshape(-1, 3), axis=0).astype(float) for n in numbers}
+    corners = {number: mesh.positions[mesh.parts == number].reshape(-1, 3) for number in numbers}
+    return {number: np.unique(points, axis=0).astype(float) for number, points in corners.items()}
 
 
 def _outline_area_px(points_world_m: np.ndarray, camera: Camera) -> float:

@@ -54,7 +54,6 @@ class ExampleBatches(IterableDataset):
         worker = get_worker_info()
         number, step = self.first, 1
         if worker is not None:
-            cv2.setNumThreads(1)
             number, step = number + worker.id, worker.num_workers
         while True:
             yield self.batch(number)
@@ -71,6 +70,8 @@ class ExampleBatches(IterableDataset):
 
 def batches(store: ImageStore, plan: BatchPlan, first: int, workers: int) -> Iterator[Batch]:
     """Batches in order; `workers` processes make them, none when 0."""
+    # OpenCV's pool of threads does not live on in a forked process, which would wait for it for ever.
+    cv2.setNumThreads(0)
     ahead = 3 if workers else None
     dataset = ExampleBatches(store, plan, first)
     return iter(DataLoader(dataset, batch_size=None, num_workers=workers, prefetch_factor=ahead))

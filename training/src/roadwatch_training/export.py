@@ -95,7 +95,7 @@ class _GraphWriter:
     def _write_module(self, node: fx.Node, module: nn.Module) -> None:
         inputs = [self._value(node.args[0])]
         if isinstance(module, nn.Conv2d):
-            inputs.append(self._constant(f"{node.target}.weight", module.weight))
+            inputs.append(self._half_constant(f"{node.target}.weight", module.weight))
             inputs.append(self._constant(f"{node.target}.bias", module.bias))
             sides = [*module.padding, *module.padding]
             kernel, strides = list(module.kernel_size), list(module.stride)
@@ -154,6 +154,12 @@ class _GraphWriter:
         if isinstance(argument, fx.Node):
             return self.values[argument]
         return self._constant(f"number_{argument}", np.float32(argument))
+
+    def _half_constant(self, name: str, value: torch.Tensor) -> str:
+        """Filters lie in the file with 16 bits, half its size, and are widened once when it is opened."""
+        stored = self._constant(f"{name}.half", value.detach().half())
+        self._add("Cast", [stored], name, to=TensorProto.FLOAT)
+        return name
 
     def _constant(self, name: str, value: torch.Tensor | np.ndarray | np.generic) -> str:
         array = value.detach().numpy() if isinstance(value, torch.Tensor) else np.asarray(value)

@@ -49,7 +49,7 @@ class ConvUnit(nn.Sequential):
     def __init__(self, inputs: int, outputs: int, kernel: int = 3, stride: int = 1) -> None:
         super().__init__(
             nn.Conv2d(inputs, outputs, kernel, stride, kernel // 2, bias=False),
-            nn.BatchNorm2d(outputs, momentum=0.03),
+            nn.BatchNorm2d(outputs),
             nn.ReLU(inplace=True),
         )
 

@@ -16,6 +16,8 @@ LEAST_ROUGHNESS = 0.02
 COAT_GLOSS = 0.7
 LAMP_STRENGTH = 12.0
 WET_DARKENING = 0.5
+# As cutout.glsl has them.
+LEAF_M, GAP_SHARE = 0.09, 0.28
 GROUND = (Surface.ASPHALT, Surface.PAVING)
 
 
@@ -71,6 +73,8 @@ def build_material(material: Material, conditions: Conditions) -> bpy.types.Mate
         _vary(tree, shader, colour, material.surface)
     if wet > 0.0:
         _wet(tree, shader, wet)
+    if material.surface is Surface.FOLIAGE:
+        _cut_gaps(tree, shader)
     return made
 
 
@@ -81,7 +85,8 @@ def _shine(shader: bpy.types.Node, material: Material, lamps_on: bool) -> None:
     if switched and not lamps_on:
         return
     shader.inputs["Emission Color"].default_value = (*material.colour, 1.0)
-    shader.inputs["Emission Strength"].default_value = material.emission * (LAMP_STRENGTH if switched else 1.0)
+    gain = LAMP_STRENGTH if switched else 1.0
+    shader.inputs["Emission Strength"].default_value = material.emission * gain
 
 
 def _vary(
@@ -149,6 +154,19 @@ def _wall_place(tree: bpy.types.NodeTree):
     tree.links.new(dot.outputs["Value"], joined.inputs["X"])
     tree.links.new(split.outputs["Z"], joined.inputs["Y"])
     return joined.outputs[0]
+
+
+def _cut_gaps(tree: bpy.types.NodeTree, shader: bpy.types.Node) -> None:
+    """Sees through between leaves: cells of a grid in model axes, of the light renderer's size and share."""
+    place = tree.nodes.new("ShaderNodeTexCoord").outputs["Object"]
+    cell = _vector_math(tree, "SNAP", place, (LEAF_M, LEAF_M, LEAF_M))
+    noise = tree.nodes.new("ShaderNodeTexWhiteNoise")
+    tree.links.new(cell, noise.inputs["Vector"])
+    solid = tree.nodes.new("ShaderNodeMath")
+    solid.operation = "GREATER_THAN"
+    solid.inputs[1].default_value = GAP_SHARE
+    tree.links.new(noise.outputs["Value"], solid.inputs[0])
+    tree.links.new(solid.outputs[0], shader.inputs["Alpha"])
 
 
 def _wet(tree: bpy.types.NodeTree, shader: bpy.types.Node, wetness: float) -> None:

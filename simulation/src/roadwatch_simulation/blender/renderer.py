@@ -5,8 +5,10 @@ from __future__ import annotations
 import dataclasses
 import math
 import os
+import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 import bpy
@@ -22,7 +24,7 @@ from .sky import set_sky
 from .stage import Stage, set_camera
 
 # Between the exposures that both renderers' curves want for the same light, in stops.
-EXPOSURE_OFFSET_EV = 1.0
+EXPOSURE_OFFSET_EV = 0.7
 DIFFUSE_BOUNCES = 2
 GLOSSY_BOUNCES = 2
 MOST_BOUNCES = 4
@@ -80,12 +82,28 @@ def _set_cycles(scene: bpy.types.Scene, samples: int) -> None:
     scene.render.image_settings.file_format = "PNG"
 
 
+@contextmanager
+def _silence() -> Iterator[None]:
+    """Keeps Blender's progress, which its C++ side writes past Python's sys.stdout, off the terminal."""
+    sys.stdout.flush()
+    kept = os.dup(1)
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, 1)
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+        os.close(nowhere)
+
+
 def _picture(scene: bpy.types.Scene) -> np.ndarray:
     """Renders and reads the developed picture back, uint8 BGR (h, w, 3)."""
     with tempfile.TemporaryDirectory() as folder:
         scene.render.filepath = str(Path(folder) / "picture.png")
-        bpy.ops.render.render(write_still=True)
+        with _silence():
+            bpy.ops.render.render(write_still=True)
         image = cv2.imread(scene.render.filepath, cv2.IMREAD_COLOR)
     if image is None:
-        raise SimulationError("Blender rendered no picture; its own messages above say why")
+        raise SimulationError(f"Blender wrote no picture to {scene.render.filepath}; is the disk full?")
     return image

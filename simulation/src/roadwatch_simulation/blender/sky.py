@@ -12,6 +12,7 @@ from ..light.lighting import Lighting
 # A little wider than the real sun: edges of shadows soften as in hazy air.
 SUN_ANGLE_RAD = math.radians(1.2)
 CLOUD_SCALE = 2.2
+SKY_MAP_PX = 256
 
 
 def set_sky(scene: bpy.types.Scene, lighting: Lighting) -> None:
@@ -21,6 +22,9 @@ def set_sky(scene: bpy.types.Scene, lighting: Lighting) -> None:
         bpy.data.worlds.remove(scene.world)
     world = bpy.data.worlds.new("sky")
     scene.world = world
+    # Cycles would sample the sky's nodes at its full size to find bright spots; there are none but the sun.
+    world.cycles.sampling_method = "MANUAL"
+    world.cycles.sample_map_resolution = SKY_MAP_PX
     world.use_nodes = True
     tree = world.node_tree
     background = tree.nodes["Background"]
@@ -58,14 +62,20 @@ def _sky_colour(tree: bpy.types.NodeTree, lighting: Lighting):
     tree.links.new(split.outputs["Z"], height.inputs["Value"])
     tree.links.new(height.outputs["Result"], ramp.inputs["Fac"])
     uniforms = lighting.uniforms
-    stops = (("ground_colour", 0.0), ("ground_colour", 0.485), ("horizon_colour", 0.502), ("zenith_colour", 1.0))
+    stops = (
+        ("ground_colour", 0.0),
+        ("ground_colour", 0.485),
+        ("horizon_colour", 0.502),
+        ("zenith_colour", 1.0),
+    )
     while len(ramp.color_ramp.elements) < len(stops):
         ramp.color_ramp.elements.new(0.5)
     for element, (name, position) in zip(ramp.color_ramp.elements, stops, strict=True):
         element.position = position
         element.color = (*uniforms[name], 1.0)
     mix = tree.nodes.new("ShaderNodeMixRGB")
-    tree.links.new(_cloud_share(tree, direction, split.outputs["Z"], float(uniforms["cloud_cover"])), mix.inputs["Fac"])
+    clouds = _cloud_share(tree, direction, split.outputs["Z"], float(uniforms["cloud_cover"]))
+    tree.links.new(clouds, mix.inputs["Fac"])
     tree.links.new(ramp.outputs["Color"], mix.inputs["Color1"])
     mix.inputs["Color2"].default_value = (*uniforms["cloud_colour"], 1.0)
     return mix.outputs["Color"]

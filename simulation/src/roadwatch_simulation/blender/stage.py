@@ -37,7 +37,8 @@ class Stage:
         for instance in instances:
             if len(instance.model.mesh.positions):
                 made = bpy.data.objects.new(instance.model.label, self._mesh(instance.model))
-                made.matrix_world = mathutils.Matrix(np.asarray(instance.world_from_model, dtype=float).tolist())
+                pose = np.asarray(instance.world_from_model, dtype=float)
+                made.matrix_world = mathutils.Matrix(pose.tolist())
                 self._scene.collection.objects.link(made)
                 self._objects.append(made)
 
@@ -96,7 +97,8 @@ def set_camera(scene: bpy.types.Scene, camera: Camera) -> None:
         scene.collection.objects.link(scene.camera)
     aspect = camera.fx / camera.fy
     render = scene.render
-    render.resolution_x, render.resolution_y, render.resolution_percentage = camera.width_px, camera.height_px, 100
+    render.resolution_x, render.resolution_y = camera.width_px, camera.height_px
+    render.resolution_percentage = 100
     # Blender takes only ratios of 1 and more on either side.
     render.pixel_aspect_x, render.pixel_aspect_y = max(1.0 / aspect, 1.0), max(aspect, 1.0)
     lens = scene.camera.data

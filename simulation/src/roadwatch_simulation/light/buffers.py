@@ -1,4 +1,4 @@
-"""Models on the graphics side: vertices without repeats, triangles in order of surface, materials as a texture."""
+"""Models on the graphics side: vertices without repeats, triangles by surface, materials as a texture."""
 
 from __future__ import annotations
 
@@ -55,7 +55,9 @@ class ModelBuffers:
     radius_m: float
     arrays: dict[tuple[int, str], moderngl.VertexArray] = field(default_factory=dict)
 
-    def array(self, context: moderngl.Context, program: moderngl.Program, layout: str) -> moderngl.VertexArray:
+    def array(
+        self, context: moderngl.Context, program: moderngl.Program, layout: str
+    ) -> moderngl.VertexArray:
         """The vertex array that feeds `program` with one of the FORMAT_ layouts."""
         key = (program.glo, layout)
         if key not in self.arrays:
@@ -94,7 +96,8 @@ def _material_texels(materials: tuple[Material, ...]) -> np.ndarray:
     texels = np.zeros((2, len(materials), 4), dtype=np.float32)
     for index, material in enumerate(materials):
         texels[0, index] = (*material.colour, material.gloss)
-        texels[1, index] = (material.f0, material.metallic, material.emission, float(is_switched(material.name)))
+        switched = float(is_switched(material.name))
+        texels[1, index] = (material.f0, material.metallic, material.emission, switched)
     return texels
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import cv2
 import moderngl
@@ -14,26 +15,41 @@ from .context import build_program, set_uniforms
 from .decals import VEHICLE_LENGTH_M, DecalPass
 from .drawlist import Drawable
 from .lighting import Lighting
+from .mirror import MirrorTarget, mirror_matrix
 from .noise import NOISE_SIZE_PX, noise_pixels
 from .projection import clip_from_camera, matrix_bytes
 from .shadows import ShadowMaps
 
-# The picture is drawn this many times wider and higher and averaged: Mesa's software driver takes more
-# time for multisampling than for all these pixels, and averaging also calms highlights.
-SUPERSAMPLING = 2
-NOISE_UNIT, SHADOW_UNIT, MATERIAL_UNIT = 0, 1, 2
+NOISE_UNIT, SHADOW_UNIT, MATERIAL_UNIT, MIRROR_UNIT = 0, 1, 2, 3
 # Matt by nature: mirrored surroundings would not show on them.
 MATT = (Surface.GRASS, Surface.PLASTER, Surface.BRICK, Surface.FOLIAGE, Surface.CLOTH)
 GROUND = (Surface.ASPHALT, Surface.PAVING, Surface.PLAIN)
 
 
-class ColourPass:
-    """Draws what the camera would see, before its lens and sensor."""
+@dataclass
+class _View:
+    """What all surfaces of one drawing share; `prepared` holds the programs that know it already."""
 
-    def __init__(self, context: moderngl.Context, width_px: int, height_px: int) -> None:
+    clip_from_world: np.ndarray
+    lighting: Lighting
+    shared: dict[str, object]
+    is_wet: bool
+    prepared: set[int] = field(default_factory=set)
+
+
+class ColourPass:
+    """Draws what the camera would see, before its lens and sensor.
+
+    The picture is drawn `supersampling` times wider and higher and averaged: Mesa's software driver takes
+    more time for multisampling than for all these pixels, and averaging also calms highlights.
+    """
+
+    def __init__(
+        self, context: moderngl.Context, width_px: int, height_px: int, supersampling: float
+    ) -> None:
         self._context = context
         self._size = (width_px, height_px)
-        self._drawn_size = (int(width_px * SUPERSAMPLING), int(height_px * SUPERSAMPLING))
+        self._drawn_size = (round(width_px * supersampling), round(height_px * supersampling))
         self._target = context.framebuffer(
             [context.renderbuffer(self._drawn_size, 4)], context.depth_renderbuffer(self._drawn_size)
         )
@@ -44,6 +60,7 @@ class ColourPass:
         self._sky = build_program(context, "sky.vert", "sky.frag")
         corners = context.buffer(np.array([-1, -1, 3, -1, -1, 3], dtype="<f4").tobytes())
         self._sky_array = context.vertex_array(self._sky, [(corners, "2f", "in_corner")])
+        self._mirror = MirrorTarget(context, width_px, height_px)
         self._programs: dict[tuple[tuple[str, int], ...], moderngl.Program] = {}
 
     def draw(
@@ -53,18 +70,21 @@ class ColourPass:
         clip_from_world: np.ndarray,
         lighting: Lighting,
         shadows: ShadowMaps,
+        ground_z_m: float = 0.0,
     ) -> np.ndarray:
         """The picture, uint8 BGR (h, w, 3)."""
-        self._target.use()
-        self._target.clear()
         self._context.enable_only(moderngl.DEPTH_TEST)
         self._context.depth_func = "<="
         self._noise.use(NOISE_UNIT)
         shadows.texture.use(SHADOW_UNIT)
         shared = self._shared_uniforms(camera, lighting, shadows)
-        prepared: set[int] = set()
+        if lighting.is_wet:
+            self._draw_mirrored(items, clip_from_world, lighting, shared, ground_z_m)
+        self._target.use()
+        self._target.clear()
+        view = _View(clip_from_world, lighting, shared, lighting.is_wet)
         for item in items:
-            self._draw_item(item, clip_from_world, lighting, shared, prepared)
+            self._draw_item(item, view)
         self._decals.contacts(items, clip_from_world, lighting)
         self._draw_sky(camera, lighting)
         self._decals.glows(items, camera, clip_from_world, lighting)
@@ -78,47 +98,61 @@ class ColourPass:
             **lighting.uniforms,
             **shadows.uniforms(),
             "eye": tuple(camera.world_from_camera[:3, 3]),
-            "pixel_angle": 1.0 / (camera.fx * SUPERSAMPLING),
+            "pixel_angle": self._size[0] / (camera.fx * self._drawn_size[0]),
+            "is_mirrored": False,
             "noise": NOISE_UNIT,
             "shadow_map": SHADOW_UNIT,
             "materials": MATERIAL_UNIT,
         }
 
-    def _program(self, surface: Surface, lighting: Lighting, is_scenery: bool) -> moderngl.Program:
-        wet = is_scenery and surface in GROUND and float(lighting.uniforms["wetness"]) > 0.0
+    def _draw_mirrored(
+        self,
+        items: Sequence[Drawable],
+        clip_from_world: np.ndarray,
+        lighting: Lighting,
+        shared: dict[str, object],
+        ground_z_m: float,
+    ) -> None:
+        """Fills the mirror's texture with what wet ground shows upside down."""
+        world_from_mirrored = mirror_matrix(ground_z_m)
+        eye = world_from_mirrored @ np.array([*shared["eye"], 1.0])
+        seen_from_below = {**shared, "eye": tuple(eye[:3]), "is_mirrored": True}
+        with self._mirror.drawing(self._context):
+            view = _View(clip_from_world @ world_from_mirrored, lighting, seen_from_below, False)
+            for item in items:
+                self._draw_item(item, view)
+        self._mirror.texture.use(MIRROR_UNIT)
+        shared.update(mirrored=MIRROR_UNIT, drawn_size_px=self._drawn_size)
+
+    def _program(self, surface: Surface, is_sunny: bool, is_wet: bool) -> moderngl.Program:
         defines = (
             ("SURFACE", int(surface)),
-            ("SUNNY", int(lighting.is_sunny)),
-            ("WET", int(wet)),
-            ("GLOSSY", int(wet or surface not in MATT)),
+            ("SUNNY", int(is_sunny)),
+            ("WET", int(is_wet)),
+            ("GLOSSY", int(is_wet or surface not in MATT)),
         )
         if defines not in self._programs:
             self._programs[defines] = build_program(self._context, "surface.vert", "surface.frag", defines)
         return self._programs[defines]
 
-    def _draw_item(
-        self,
-        item: Drawable,
-        clip_from_world: np.ndarray,
-        lighting: Lighting,
-        shared: dict[str, object],
-        prepared: set[int],
-    ) -> None:
-        pose = np.asarray(item.instance.world_from_model, dtype=float)
+    def _draw_item(self, item: Drawable, view: _View) -> None:
+        pose = item.world_from_model
+        is_scenery = item.instance.object_id == 0
         length, width, height = item.instance.model.size_lwh_m
-        is_vehicle = item.instance.object_id > 0 and length > VEHICLE_LENGTH_M
+        is_vehicle = not is_scenery and length > VEHICLE_LENGTH_M
         own = {
-            "clip_from_model": matrix_bytes(clip_from_world @ pose),
+            "clip_from_model": matrix_bytes(view.clip_from_world @ pose),
             "world_from_model": matrix_bytes(pose),
             "foot_z": float(pose[2, 3]),
             "body": (length / 2.0, width / 2.0, height) if is_vehicle else (0.0, 0.0, 0.0),
         }
         item.buffers.materials.use(MATERIAL_UNIT)
         for run in item.buffers.ranges:
-            program = self._program(run.surface, lighting, item.instance.object_id == 0)
-            if program.glo not in prepared:
-                set_uniforms(program, shared)
-                prepared.add(program.glo)
+            is_wet = view.is_wet and is_scenery and run.surface in GROUND
+            program = self._program(run.surface, view.lighting.is_sunny, is_wet)
+            if program.glo not in view.prepared:
+                set_uniforms(program, view.shared)
+                view.prepared.add(program.glo)
             set_uniforms(program, own)
             array = item.buffers.array(self._context, program, FORMAT_FULL)
             array.render(vertices=run.count, first=run.first)

@@ -55,7 +55,7 @@ class DecalPass:
     def _draw_contact(self, item: Drawable, clip_from_world: np.ndarray, is_sunny: bool) -> None:
         length, width, _ = item.instance.model.size_lwh_m
         is_vehicle = length > VEHICLE_LENGTH_M
-        pose = np.asarray(item.instance.world_from_model, dtype=float)
+        pose = item.world_from_model
         values = {
             "clip_from_model": matrix_bytes(clip_from_world @ pose),
             "half_size": (length / 2.0, width / 2.0),
@@ -83,7 +83,7 @@ class DecalPass:
         self._restore()
 
     def _draw_glow(self, item: Drawable, lamp: Lamp, camera: Camera, clip_from_world: np.ndarray) -> None:
-        pose = np.asarray(item.instance.world_from_model, dtype=float)
+        pose = item.world_from_model
         place = pose[:3, :3] @ lamp.center_m + pose[:3, 3]
         to_eye = camera.world_from_camera[:3, 3] - place
         distance_m = max(float(np.linalg.norm(to_eye)), 1e-3)

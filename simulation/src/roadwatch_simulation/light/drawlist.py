@@ -14,9 +14,10 @@ from .projection import sphere_in_planes
 
 @dataclass(frozen=True)
 class Drawable:
-    """An instance, its buffers and its bounding sphere in the world."""
+    """An instance, its buffers, and its pose and bounding sphere in the world."""
 
     instance: Instance
+    world_from_model: np.ndarray
     buffers: ModelBuffers
     center_m: np.ndarray
     radius_m: float
@@ -31,7 +32,7 @@ def drawables(instances: Sequence[Instance], cache: BufferCache) -> list[Drawabl
         buffers = cache.get(instance.model)
         pose = np.asarray(instance.world_from_model, dtype=float)
         center = pose[:3, :3] @ buffers.center_m + pose[:3, 3]
-        found.append(Drawable(instance, buffers, center, buffers.radius_m))
+        found.append(Drawable(instance, pose, buffers, center, buffers.radius_m))
     return found
 
 

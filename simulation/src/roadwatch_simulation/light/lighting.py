@@ -22,7 +22,9 @@ BAND_ALBEDO = np.array([0.16, 0.15, 0.135])
 # From this strength on the sun stands in a clear sky; below, clouds close over it.
 CLEAR_SUN = 1.4
 # A clear sky's light is raised by what bright walls and clouds throw back into the shade.
-AMBIENT_GAIN_CLEAR = 1.45
+AMBIENT_GAIN_CLEAR = 1.35
+# That share of it has lost the sky's blue on the way.
+AMBIENT_GREY_SHARE = 0.35
 # A noon street (sun 2.6, sky 1) is exposed so; darker scenes are brightened only in part, as a camera would.
 NOON_EXPOSURE = 0.60
 NOON_LUMINANCE = 2.2
@@ -40,6 +42,11 @@ class Lighting:
     sun_direction: np.ndarray
     sun_colour: np.ndarray
     uniforms: dict[str, object]
+
+    @property
+    def is_wet(self) -> bool:
+        """True when the ground mirrors."""
+        return bool(self.uniforms["wetness"])
 
     @property
     def lamps_on(self) -> bool:
@@ -73,6 +80,7 @@ def lighting_of(light: Light) -> Lighting:
     zenith = _mixed(_mixed(ZENITH_NOON, ZENITH_DUSK, light.warmth), ZENITH_GREY, grey) * light.sky
     horizon = _mixed(_mixed(HORIZON_NOON, HORIZON_DUSK, light.warmth), HORIZON_GREY, grey) * light.sky
     ambient = (0.60 * zenith + 0.40 * horizon) * _mixed(AMBIENT_GAIN_CLEAR, 1.0, grey)
+    ambient = _mixed(ambient, np.full(3, ambient @ LUMINANCE), AMBIENT_GREY_SHARE)
     on_ground = ambient + sun * max(direction[2], 0.0)
     cover, offset = _clouds(light, grey)
     luminance = float(on_ground @ LUMINANCE) + 1e-3

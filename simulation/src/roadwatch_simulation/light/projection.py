@@ -36,7 +36,8 @@ def clip_from_world(camera: Camera) -> np.ndarray:
 def frustum_planes(clip_from_world_matrix: np.ndarray) -> np.ndarray:
     """Planes (5, 4) of a clip volume without its far side, unit normals inward: n . p + d >= 0 inside."""
     rows = clip_from_world_matrix
-    planes = np.stack([rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1], rows[3] + rows[2]])
+    sides = [rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1]]
+    planes = np.stack([*sides, rows[3] + rows[2]])
     return planes / np.linalg.norm(planes[:, :3], axis=1, keepdims=True)
 
 

@@ -18,24 +18,29 @@ from .projection import clip_from_world, frustum_planes
 from .shadows import ShadowPass
 
 
+# Smooth enough once a lens and a sensor have been at it; 2 is better for figures and takes longer.
+SUPERSAMPLING = 1.5
+
+
 class LightRenderer:
     """Draws pictures of one size.
 
     The same instances, camera and light give the same bytes on the same machine. Models are kept on the
     graphics side by identity, so hand over the same Model objects again rather than equal ones.
+    `supersampling` is how many pixels are drawn for one, along each side.
     """
 
-    def __init__(self, width_px: int, height_px: int) -> None:
+    def __init__(self, width_px: int, height_px: int, supersampling: float = SUPERSAMPLING) -> None:
         self.width_px = width_px
         self.height_px = height_px
         self._context = open_context()
         self._cache = BufferCache(self._context)
         self._shadows = ShadowPass(self._context)
-        self._colour = ColourPass(self._context, width_px, height_px)
+        self._colour = ColourPass(self._context, width_px, height_px, supersampling)
         self._identity = IdentityPass(self._context, width_px, height_px)
 
     def render(self, instances: Sequence[Instance], camera: Camera, light: Light) -> Rendered:
-        """The picture of `instances` from `camera`; raises SimulationError when the camera has another size."""
+        """The picture of `instances` from `camera`; a camera of another size raises SimulationError."""
         if (camera.width_px, camera.height_px) != (self.width_px, self.height_px):
             raise SimulationError(
                 f"the renderer was made for {self.width_px}x{self.height_px} px and got a camera of "
@@ -49,10 +54,11 @@ class LightRenderer:
         clip = clip_from_world(camera)
         visible = nearest_first(seen(everything, frustum_planes(clip)), camera.world_from_camera[:3, 3])
         lighting = lighting_of(light)
+        ground_z_m = _ground_z_m(everything)
         shadows = self._shadows.skip()
         if lighting.is_sunny:
-            shadows = self._shadows.draw(everything, camera, lighting.sun_direction, _ground_z_m(everything))
-        image = self._colour.draw(visible, camera, clip, lighting, shadows)
+            shadows = self._shadows.draw(everything, camera, lighting.sun_direction, ground_z_m)
+        image = self._colour.draw(visible, camera, clip, lighting, shadows, ground_z_m)
         object_ids, part_ids = self._identity.draw(visible, clip)
         silhouettes = self._identity.silhouettes(visible, clip)
         self._cache.trim()
@@ -65,5 +71,5 @@ class LightRenderer:
 
 def _ground_z_m(items: Sequence[Drawable]) -> float:
     """Height of the ground, taken from the feet of the objects."""
-    feet = [float(item.instance.world_from_model[2, 3]) for item in items if item.instance.object_id > 0]
+    feet = [float(item.world_from_model[2, 3]) for item in items if item.instance.object_id > 0]
     return float(np.median(feet)) if feet else 0.0

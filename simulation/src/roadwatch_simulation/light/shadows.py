@@ -74,7 +74,7 @@ class ShadowPass:
         return ShadowMaps(self._texture, tuple(matrices))
 
     def _draw_item(self, item: Drawable, clip_from_world: np.ndarray) -> None:
-        clip_from_model = matrix_bytes(clip_from_world @ np.asarray(item.instance.world_from_model, dtype=float))
+        clip_from_model = matrix_bytes(clip_from_world @ item.world_from_model)
         for run in item.buffers.ranges:
             program = self._programs[run.surface is Surface.FOLIAGE]
             program["clip_from_model"].write(clip_from_model)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..errors import SimulationError
 from ..scene import Scene
@@ -21,13 +21,18 @@ class Scenario:
     build: Callable[[int, int], Scene]
 
 
+def _one_picture(seed: int, frames: int) -> Scene:
+    """The first picture of a training set, standing still for as long as asked."""
+    return replace(training_scene(seed, 0), frames=frames)
+
+
 SCENARIOS: dict[str, Scenario] = {
     "paper_x_path": Scenario("one car crosses 30 m ahead of a full-HD camera", 75, paper.x_path),
     "paper_y_path": Scenario("one car drives away from a full-HD camera, 8 to 45 m", 75, paper.y_path),
     "turntable": Scenario("one car turns through 360 degrees, 12 m ahead", 180, paper.turntable),
-    "grid": Scenario("one car stands in every cell of a ground grid once", len(paper.grid_cells()), paper.grid),
+    "grid": Scenario("one car stands in every cell of a grid once", len(paper.grid_cells()), paper.grid),
     "traffic": Scenario("six cameras on a car in moving traffic", 120, traffic),
-    "training": Scenario("one random picture, as for training a detector", 1, lambda seed, _: training_scene(seed, 0)),
+    "training": Scenario("one random picture for training a detector", 1, _one_picture),
 }
 
 

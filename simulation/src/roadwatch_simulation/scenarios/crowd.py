@@ -1,4 +1,4 @@
-"""Fills a place with standing things, none inside another: bays, queues, pavements, crossings, open ground."""
+"""Fills a place with standing things, none inside another: bays, lanes, pavements, crossings."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from ..traffic import Look
 CLEARANCE_M = 0.25
 """Between the cuboids of any two things: mirrors stand out of them."""
 VEHICLE_SHARES = {
-    "sedan": 0.21, "compact": 0.17, "suv": 0.18, "wagon": 0.09, "minivan": 0.07, "pickup": 0.07, "sports": 0.04,
+    "sedan": 0.21, "compact": 0.17, "suv": 0.18, "wagon": 0.09, "minivan": 0.07, "pickup": 0.07,
+    "sports": 0.04,
     "van": 0.08, "truck": 0.05, "bus": 0.04,
 }  # fmt: skip
 LONG_KINDS = ("bus", "truck")
@@ -61,7 +62,8 @@ class Crowd:
         """Stands a thing somewhere; false where it is out of view, too close, or in the way."""
         if len(self.objects) >= self.most or not self._is_in_view(x_m, y_m):
             return False
-        thing = SceneObject(f"{look.kind} {len(self.objects) + 1}", look.kind, look.seed, standing(x_m, y_m, yaw_rad))
+        name = f"{look.kind} {len(self.objects) + 1}"
+        thing = SceneObject(name, look.kind, look.seed, standing(x_m, y_m, yaw_rad))
         length, width, _ = thing.model.size_lwh_m
         print_ = Footprint(x_m, y_m, yaw_rad, length + CLEARANCE_M, width + CLEARANCE_M)
         if print_.overlaps(self.eye) or any(print_.overlaps(other) for other in self._taken):
@@ -139,7 +141,8 @@ class Crowd:
         length, width, _ = SceneObject("", look.kind, look.seed, standing(0, 0, 0)).model.size_lwh_m
         radius = 0.5 * math.hypot(length, width)
         layout = self.place.layout
-        around = [(x + radius * cos, y + radius * sin) for cos, sin in ((1, 0), (-1, 0), (0, 1), (0, -1), (0, 0))]
+        directions = ((1, 0), (-1, 0), (0, 1), (0, -1), (0, 0))
+        around = [(x + radius * cos, y + radius * sin) for cos, sin in directions]
         return all(layout.height_m(*point) == 0.0 and layout.is_road(*point) for point in around)
 
     def _vehicle(self, *, longest: bool = True) -> Look:

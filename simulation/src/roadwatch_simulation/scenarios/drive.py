@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from ..imaging import Imaging
 from ..motion import Path, Waypoint, standing
 from ..rig import CameraMount, mount
 from ..scene import Environment, Scene
@@ -22,7 +23,11 @@ WIDE_PX = 465.0
 EGO_SPEED_M_PER_S = 8.5
 START_M = -52.0
 ROAD_END_M = 190.0
+CLEAN_IMAGING = Imaging(noise=0.7, blur_px=0.35)
+"""A good camera by daylight: most of a clip's bytes are spent on noise."""
 PLACES_TRIED = 400
+SHORTEST_PLAN_S = 10.0
+"""Traffic is planned for at least so long, so that a short run is the beginning of a longer one."""
 BUILT_UP = ("town", "mixed", "house", "tower")
 
 
@@ -39,23 +44,25 @@ def six_cameras() -> tuple[CameraMount, ...]:
 
 
 def traffic(seed: int, frames: int) -> Scene:
-    """Oncoming, crossing, turning, overtaking and parked vehicles, people and cyclists around a moving rig."""
+    """Oncoming, crossing, turning, overtaking and parked vehicles and people around a moving rig."""
     rng = np.random.default_rng([seed, 61])
     place_seed = _place_seed(rng)
     environment = Environment(
         "junction", place_seed, str(rng.choice(["sun", "sun", "overcast"])),
-        sun_azimuth_deg=round(float(rng.uniform(-180, 180)), 1), sun_elevation_deg=round(float(rng.uniform(25, 60)), 1),
+        sun_azimuth_deg=round(float(rng.uniform(-180, 180)), 1),
+        sun_elevation_deg=round(float(rng.uniform(25, 60)), 1),
     )  # fmt: skip
     place = build_place("junction", place_seed)
-    duration_s = frames / RATE_HZ + 0.2
+    duration_s = max(frames / RATE_HZ, SHORTEST_PLAN_S) + 0.2
     roads = _Roads(place_seed)
     ego_y = roads.lane_y(0)
-    ego = Path((Waypoint(0.0, START_M, ego_y), Waypoint(duration_s, START_M + EGO_SPEED_M_PER_S * duration_s, ego_y)))
+    end_m = START_M + EGO_SPEED_M_PER_S * duration_s
+    ego = Path((Waypoint(0.0, START_M, ego_y), Waypoint(duration_s, end_m, ego_y)))
     planner = _Planner(TrafficPlan(place, ego, duration_s), roads, rng)
     planner.fill()
     return Scene(
         frames=frames, rate_hz=RATE_HZ, cameras=six_cameras(), objects=tuple(planner.plan.objects), seed=seed,
-        environment=environment, ego=ego,
+        environment=environment, imaging=CLEAN_IMAGING, ego=ego,
     )  # fmt: skip
 
 
@@ -187,7 +194,8 @@ class _Planner:
         for _ in range(count):
             line = (roads.westward, roads.northward, roads.southward, roads.eastward)[int(rng.integers(4))](0)
             right = _shifted(line, -1.0)
-            path = passing(*right, ROAD_END_M + rng.uniform(-60.0, 30.0), rng.uniform(3.5, 5.5), self.plan.duration_s)
+            along_m, speed = ROAD_END_M + rng.uniform(-60.0, 30.0), rng.uniform(3.5, 5.5)
+            path = passing(*right, along_m, speed, self.plan.duration_s)
             if path is not None:
                 self.plan.propose(self._one_of(self._wardrobe.riders), path)
 

@@ -48,7 +48,8 @@ def grid(seed: int, frames: int) -> Scene:
     waypoints = []
     for frame in range(frames):
         ahead, aside = cells[frame % len(cells)] + rng.uniform(-0.4, 0.4, 2) * GRID_STEP_M
-        waypoints.append(Waypoint(frame / RATE_HZ, float(ahead), float(aside), float(rng.uniform(0.0, 2.0 * math.pi))))
+        yaw = float(rng.uniform(0.0, 2.0 * math.pi))
+        waypoints.append(Waypoint(frame / RATE_HZ, float(ahead), float(aside), yaw))
     return _one_car(seed, frames, Path(tuple(waypoints)))
 
 
@@ -75,7 +76,7 @@ def _one_car(seed: int, frames: int, path: Path) -> Scene:
     light = "sun" if seed % 2 == 0 else "overcast"
     return Scene(
         frames=frames, rate_hz=RATE_HZ, cameras=(_camera(),), objects=(SceneObject("car", kind, seed, path),),
-        seed=seed, environment=Environment("plain", seed, light, sun_azimuth_deg=150.0, sun_elevation_deg=40.0),
+        seed=seed, environment=Environment("plain", seed, light, 150.0, 40.0),
     )  # fmt: skip
 
 

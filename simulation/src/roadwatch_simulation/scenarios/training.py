@@ -33,7 +33,8 @@ def training_scene(seed: int, index: int) -> Scene:
     rng = np.random.default_rng([seed, 41, index])
     environment = _environment(seed, index, rng)
     place = build_place(environment.kind, environment.seed)
-    wardrobe = draw_wardrobe(int(np.random.default_rng([seed, 42, index // PICTURES_PER_WARDROBE]).integers(1 << 30)))
+    shared = np.random.default_rng([seed, 42, index // PICTURES_PER_WARDROBE])
+    wardrobe = draw_wardrobe(int(shared.integers(1 << 30)))
     fewest = int(rng.choice([0, 3, 6], p=[0.05, 0.35, 0.6]))
     for _ in range(ATTEMPTS):
         crowd, focal, height = _view(place, wardrobe, rng)
@@ -43,7 +44,8 @@ def training_scene(seed: int, index: int) -> Scene:
     eye = crowd.eye
     view = crowd.view_yaw_rad - eye.yaw_rad
     return Scene(
-        frames=1, rate_hz=10.0, cameras=(_camera(rng, view, focal, height),), objects=tuple(crowd.objects), seed=seed,
+        frames=1, rate_hz=10.0, cameras=(_camera(rng, view, focal, height),),
+        objects=tuple(crowd.objects), seed=seed,
         environment=environment, imaging=random_imaging(rng), ego=standing(eye.x_m, eye.y_m, eye.yaw_rad),
         light_override=random_light(rng, environment),
     )  # fmt: skip
@@ -57,7 +59,8 @@ def _view(place: Place, wardrobe: Wardrobe, rng: np.random.Generator) -> tuple[C
     focal = float(np.exp(rng.uniform(math.log(400.0), math.log(1100.0))))
     half_view = math.atan(0.5 * IMAGE_SIZE_PX[0] / focal)
     eye = Footprint(x, y, heading, *EGO_SIZE_M)
-    crowd = Crowd(place, wardrobe, rng, eye, REACH_M, heading + view, half_view, most=int(rng.integers(14, 46)))
+    most = int(rng.integers(14, 46))
+    crowd = Crowd(place, wardrobe, rng, eye, REACH_M, heading + view, half_view, most)
     return crowd, focal, float(rng.uniform(1.2, 2.3))
 
 
@@ -102,7 +105,8 @@ def _camera(rng: np.random.Generator, view_rad: float, focal_px: float, height_m
     center = (0.5 * width_px - 0.5 + rng.normal(0.0, 8.0), 0.5 * height_px - 0.5 + rng.normal(0.0, 12.0))
     return mount(
         "camera", IMAGE_SIZE_PX, round(focal_px, 2), (0.0, 0.0, round(height_m, 3)),
-        yaw_deg=math.degrees(view_rad), pitch_deg=float(rng.normal(1.0, 2.2)), roll_deg=float(rng.normal(0.0, 0.9)),
+        yaw_deg=math.degrees(view_rad), pitch_deg=float(rng.normal(1.0, 2.2)),
+        roll_deg=float(rng.normal(0.0, 0.9)),
         center_px=(round(float(center[0]), 2), round(float(center[1]), 2)),
     )  # fmt: skip
 

@@ -11,7 +11,9 @@ from .layout import Bay, Footprint, Lane, Layout, Place
 from .plain import build_plain
 from .street import build_street
 
-_BUILDERS = {"street": build_street, "junction": build_junction, "car_park": build_car_park, "plain": build_plain}
+_BUILDERS = {
+    "street": build_street, "junction": build_junction, "car_park": build_car_park, "plain": build_plain,
+}  # fmt: skip
 ENVIRONMENT_KINDS = tuple(_BUILDERS)
 
 __all__ = ["ENVIRONMENT_KINDS", "Bay", "Footprint", "Lane", "Layout", "Place", "build_place"]
@@ -19,7 +21,7 @@ __all__ = ["ENVIRONMENT_KINDS", "Bay", "Footprint", "Lane", "Layout", "Place", "
 
 @lru_cache(maxsize=2)
 def build_place(kind: str, seed: int) -> Place:
-    """The place of that kind with that seed; the last two are kept, so that frames of one scene share them."""
+    """The place of that kind with that seed. The last two are kept: frames of a scene share theirs."""
     if kind not in _BUILDERS:
         raise SimulationError(f"environment `{kind}` does not exist; there are {', '.join(_BUILDERS)}")
     return _BUILDERS[kind](seed)

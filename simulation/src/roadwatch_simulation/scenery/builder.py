@@ -97,7 +97,9 @@ class MeshBuilder:
         """Adds one box along the axes."""
         self.boxes(np.array([lower]), np.array([upper]), material, faces)
 
-    def ground(self, x_m: tuple[float, float], y_m: tuple[float, float], z_m: float, material: Material) -> None:
+    def ground(
+        self, x_m: tuple[float, float], y_m: tuple[float, float], z_m: float, material: Material
+    ) -> None:
         """Adds a level rectangle, in tiles no longer than a cell."""
         xs = np.linspace(*x_m, max(2, math.ceil((x_m[1] - x_m[0]) / CELL_M) + 1))
         ys = np.linspace(*y_m, max(2, math.ceil((y_m[1] - y_m[0]) / CELL_M) + 1))
@@ -130,7 +132,7 @@ class MeshBuilder:
         self.triangles(np.stack([centre, high[:-1], high[1:]], 1), material)
 
     def fan(self, centre, rim: np.ndarray, material: Material) -> None:
-        """Adds a flat polygon that is star-shaped about `centre`, from its open rim (n, 3), counter-clockwise."""
+        """Adds a flat polygon, star-shaped about `centre`; its rim (n, 3) runs counter-clockwise."""
         rim = np.asarray(rim, dtype=float)
         centres = np.broadcast_to(np.asarray(centre, dtype=float), (len(rim) - 1, 3))
         self.triangles(np.stack([centres, rim[:-1], rim[1:]], 1), material)

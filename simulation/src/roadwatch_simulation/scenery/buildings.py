@@ -36,11 +36,12 @@ class Facade:
 
 
 def add_building(
-    builder: MeshBuilder, width_m: float, depth_m: float, rng: np.random.Generator, style: str, *, far: bool = False
+    builder: MeshBuilder, width_m: float, depth_m: float, rng: np.random.Generator, style: str, *,
+    far: bool = False,
 ) -> float:
-    """Adds a building behind the line y = 0 from x = 0 to `width_m`, its face towards -y; gives its height (m).
+    """Adds a building behind the line y = 0 from x = 0 to `width_m`, its face towards -y.
 
-    A far one has plain panes for windows.
+    Gives its height (m). A far one has plain panes for windows.
     """
     facade = _divide(width_m, rng, style)
     walls = wall(rng)
@@ -135,7 +136,8 @@ def _add_openings(builder, left, right, low, high, walls, frame, rng) -> None:
     one = np.ones_like(left)
     outer, inner = 0.0 * one, RECESS_M * one
     for x, flip in ((left, False), (right, True)):
-        reveal = [(x, outer, low * one), (x, inner, low * one), (x, inner, high * one), (x, outer, high * one)]
+        reveal = [(x, outer, low * one), (x, inner, low * one), (x, inner, high * one),
+            (x, outer, high * one)]
         builder.quads(_corners(reveal[::-1] if flip else reveal), walls)
     lintel = [(left, outer, high * one), (left, inner, high * one), (right, inner, high * one),
               (right, outer, high * one)]
@@ -172,7 +174,8 @@ def _add_shop(builder, facade: Facade, walls: Material, rng: np.random.Generator
     accent = painted(rng)
     _wall_panels(builder, 0.0, width, 0.0, 0.4, walls)
     _wall_panels(builder, 0.0, width, height - 0.25, height, walls)
-    builder.box((0.3, -0.12, height - 0.95), (width - 0.3, 0, height - 0.25), accent, ("-x", "+x", "-y", "+z", "-z"))
+    builder.box((0.3, -0.12, height - 0.95), (width - 0.3, 0, height - 0.25), accent,
+        ("-x", "+x", "-y", "+z", "-z"))
     _add_lettering(builder, width, height - 0.6, rng)
     count = max(1, int(width / rng.uniform(2.2, 4.0)))
     edges = np.linspace(0.0, width, count + 1)
@@ -195,15 +198,18 @@ def _add_lettering(builder, width, middle_z, rng) -> None:
     left = start + np.arange(count) * 0.4
     tall = rng.uniform(0.12, 0.22, count)
     letter = painted(rng, ((0.8, 0.8, 0.78), (0.05, 0.05, 0.05), (0.7, 0.6, 0.2)))
-    builder.boxes(_points(left, -0.15, middle_z - tall), _points(left + 0.26, -0.12, middle_z + tall), letter, ("-y",))
+    builder.boxes(_points(left, -0.15, middle_z - tall), _points(left + 0.26, -0.12, middle_z + tall),
+        letter, ("-y",))
 
 
 def _add_awning(builder, width, height, rng) -> None:
-    cloth = Material("awning", varied(rng, choice(rng, ((0.5, 0.05, 0.05), (0.05, 0.2, 0.1), (0.7, 0.65, 0.5)))),
+    cloth = Material("awning",
+        varied(rng, choice(rng, ((0.5, 0.05, 0.05), (0.05, 0.2, 0.1), (0.7, 0.65, 0.5)))),
                      surface=Surface.CLOTH)
     low, high = height - 1.35, height - 0.95
     top = [[0.3, -1.2, low], [width - 0.3, -1.2, low], [width - 0.3, 0, high], [0.3, 0, high]]
-    skirt = [[0.3, -1.2, low - 0.22], [width - 0.3, -1.2, low - 0.22], [width - 0.3, -1.2, low], [0.3, -1.2, low]]
+    skirt = [[0.3, -1.2, low - 0.22], [width - 0.3, -1.2, low - 0.22], [width - 0.3, -1.2, low],
+        [0.3, -1.2, low]]
     builder.quads(np.array([top, top[::-1], skirt, skirt[::-1]]), cloth)
 
 
@@ -211,9 +217,11 @@ def _add_balconies(builder, facade: Facade, base: float, rng: np.random.Generato
     left, right = _window_spans(facade)
     chosen = rng.random(len(left)) < 0.4
     left, right = left[chosen] - 0.3, right[chosen] + 0.3
-    builder.boxes(_points(left, -1.0, base), _points(right, 0, base + 0.14), painted(rng, ((0.4, 0.4, 0.38),)),
+    builder.boxes(_points(left, -1.0, base), _points(right, 0, base + 0.14),
+        painted(rng, ((0.4, 0.4, 0.38),)),
                   ("-x", "+x", "-y", "+z", "-z"))
-    builder.boxes(_points(left, -1.0, base + 0.14), _points(right, -0.95, base + 1.05), DARK_STEEL, ("-y", "+y"))
+    builder.boxes(_points(left, -1.0, base + 0.14), _points(right, -0.95, base + 1.05), DARK_STEEL,
+        ("-y", "+y"))
 
 
 def _add_sides(builder, facade: Facade, depth_m: float, walls: Material, frame: Material) -> None:
@@ -234,7 +242,8 @@ def _add_roof(builder, facade: Facade, depth_m: float, rng: np.random.Generator,
         _add_pitched_roof(builder, width, depth_m, height, roof, rng)
         return
     parapet = painted(rng, ((0.4, 0.4, 0.39), (0.2, 0.2, 0.2), (0.6, 0.58, 0.54)), 0.1)
-    builder.box((-0.1, -0.18, height), (width + 0.1, 0.2, height + 0.55), parapet, ("-x", "+x", "-y", "+y", "+z", "-z"))
+    builder.box((-0.1, -0.18, height), (width + 0.1, 0.2, height + 0.55), parapet,
+        ("-x", "+x", "-y", "+y", "+z", "-z"))
     builder.box((0, 0, height), (width, depth_m, height + 0.3), parapet)
     if style != "hall" and rng.random() < 0.6:
         x = rng.uniform(0.2, 0.6) * width

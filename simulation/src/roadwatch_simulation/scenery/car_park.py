@@ -8,6 +8,7 @@ import numpy as np
 
 from . import furniture
 from .buildings import add_building
+from .clutter import CLUTTER
 from .layout import Place
 from .palette import WHITE_PAINT, YELLOW_PAINT, choice
 from .section import MARKING_Z_M
@@ -91,7 +92,8 @@ def _add_edges(site: Site, reach: float, low: float, high: float) -> None:
     """A shop behind one long side; hedges, fences and trees on the others."""
     rng, builder = site.rng, site.builder
     shop_side = int(rng.integers(4))
-    sides = ((high, reach, 0.0), (reach, high, -math.pi / 2), (-low, reach, math.pi), (reach, -low, math.pi / 2))
+    sides = ((high, reach, 0.0), (reach, high, -math.pi / 2), (-low, reach, math.pi),
+        (reach, -low, math.pi / 2))
     for index, (distance, half, yaw) in enumerate(sides):
         half = reach if index % 2 == 0 else max(abs(low), high)
         with builder.placed(0.0, 0.0, yaw):
@@ -122,6 +124,9 @@ def _add_boundary(site: Site, half: float, distance: float) -> None:
                 furniture.add_fence(builder, 12.0, rng)
         if rng.random() < 0.6:
             site.tree(float(x) + rng.uniform(1, 10), distance + 3.0, KERB_M)
+        if rng.random() < 0.4:
+            add, size = choice(rng, CLUTTER)
+            site.put(add, float(x) + rng.uniform(3, 8), distance - 1.0, size_m=size)
     for x in np.arange(-half, half - 14.0, rng.uniform(18.0, 34.0)):
         if rng.random() < 0.7:
             with builder.placed(float(x), distance + rng.uniform(10.0, 25.0)):

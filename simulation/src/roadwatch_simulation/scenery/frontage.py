@@ -8,6 +8,7 @@ import numpy as np
 
 from . import furniture
 from .buildings import add_building
+from .clutter import CLUTTER
 from .palette import choice
 from .section import Section
 from .site import Site
@@ -20,8 +21,9 @@ NEAR_STREET_M = 14.0
 def line_road_side(
     site: Site, section: Section, span: tuple[float, float], buildings_from_m: float, buildings_to_m: float
 ) -> None:
-    """Lines one side of a road (in that side's frame): furniture over `span`, buildings over their own range."""
+    """Lines one side of a road, in that side's frame: furniture over `span`, buildings over their range."""
     _furnish(site, section, span)
+    _add_clutter(site, section, span)
     _add_plots(site, section, (buildings_from_m, buildings_to_m))
 
 
@@ -63,6 +65,19 @@ def _add_small_things(site: Site, section: Section, x: float, y: float) -> None:
             site.put(furniture.add_bollard, x + 1.4 * step, y, z_m=kerb, size_m=(0.2, 0.2))
 
 
+def _add_clutter(site: Site, section: Section, span: tuple[float, float]) -> None:
+    """Things that stand by the buildings, where the pavement is wide enough to leave a way."""
+    rng = site.rng
+    for x in np.arange(span[0] + 6.0, span[1] - 6.0, 11.0):
+        add, size = choice(rng, CLUTTER)
+        beyond = section.frontage_line_m + 0.5 * size[1] + 0.1
+        room = beyond + 0.5 * size[1] < section.building_line_m
+        wide = section.pavement_m > size[1] + 1.6
+        if rng.random() < 0.3 and (room or wide):
+            y = beyond if room else section.frontage_line_m - 0.5 * size[1] - 0.1
+            site.put(add, float(x + rng.uniform(-3, 3)), y, z_m=section.kerb_m, size_m=size)
+
+
 def _add_plots(site: Site, section: Section, span: tuple[float, float]) -> None:
     rng = site.rng
     depth_end = section.building_line_m + 14.0
@@ -81,7 +96,8 @@ def _add_plots(site: Site, section: Section, span: tuple[float, float]) -> None:
 
 
 def _plot_width(rng: np.random.Generator, style: str) -> float:
-    low, high = {"town": (7, 24), "house": (8, 15), "tower": (15, 32), "hall": (20, 45), "park": (12, 30)}[style]
+    low, high = {"town": (7, 24), "house": (8, 15), "tower": (15, 32), "hall": (20, 45),
+        "park": (12, 30)}[style]
     return float(rng.uniform(low, high))
 
 

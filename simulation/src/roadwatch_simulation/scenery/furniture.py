@@ -10,7 +10,8 @@ from .palette import (
     ACCENT_SHADES, DARK_STEEL, GLASS, RETROREFLECTIVE, RUBBER, STEEL, WOOD, choice, painted, wall,
 )
 
-SIGN_FACES = ((0.55, 0.02, 0.02), (0.02, 0.10, 0.45), (0.74, 0.74, 0.73), (0.65, 0.50, 0.02), (0.02, 0.25, 0.08))
+SIGN_FACES = ((0.55, 0.02, 0.02), (0.02, 0.10, 0.45), (0.74, 0.74, 0.73), (0.65, 0.50, 0.02),
+    (0.02, 0.25, 0.08))
 _LAMP = Material("lamp", (0.8, 0.75, 0.6), gloss=0.6, f0=0.05, emission=0.6)
 
 
@@ -22,8 +23,10 @@ def add_street_lamp(builder: MeshBuilder, rng: np.random.Generator, reach_m: flo
     builder.cylinder((0, 0, 0), 1.1, 0.13, metal, sides=8)
     if rng.random() < 0.75:
         builder.box((-0.035, 0, height - 0.1), (0.035, reach_m, height - 0.02), metal, ALL_FACES)
-        builder.box((-0.14, reach_m - 0.2, height - 0.16), (0.14, reach_m + 0.5, height - 0.04), metal, ALL_FACES)
-        builder.box((-0.1, reach_m - 0.1, height - 0.18), (0.1, reach_m + 0.4, height - 0.16), _LAMP, ALL_FACES)
+        builder.box((-0.14, reach_m - 0.2, height - 0.16), (0.14, reach_m + 0.5, height - 0.04), metal,
+            ALL_FACES)
+        builder.box((-0.1, reach_m - 0.1, height - 0.18), (0.1, reach_m + 0.4, height - 0.16), _LAMP,
+            ALL_FACES)
     else:
         builder.cylinder((0, 0, height), 0.45, 0.14, _LAMP, sides=8, top_radius_m=0.22)
 
@@ -44,12 +47,14 @@ def _signal_head(builder: MeshBuilder, at, state: int) -> None:
     builder.box((x - 0.22, y - 0.17, z), (x - 0.04, y + 0.17, z + 0.98), RUBBER, ALL_FACES)
     for index, colour in enumerate(((0.9, 0.03, 0.02), (0.9, 0.45, 0.02), (0.03, 0.75, 0.30))):
         lit = index == state
-        lens = Material("signal", tuple(c if lit else c * 0.12 for c in colour), 0.4, 0.04, emission=2.5 * lit)
+        lens = Material("signal", tuple(c if lit else c * 0.12 for c in colour), 0.4, 0.04,
+            emission=2.5 * lit)
         middle = z + 0.82 - 0.32 * index
         angle = np.linspace(2 * np.pi, 0.0, 11)
         rim = np.stack([np.full(11, x - 0.225), y + 0.11 * np.cos(angle), middle + 0.11 * np.sin(angle)], 1)
         builder.fan((x - 0.225, y, middle), rim, lens)
-        builder.box((x - 0.36, y - 0.12, middle + 0.11), (x - 0.22, y + 0.12, middle + 0.135), RUBBER, ALL_FACES)
+        builder.box((x - 0.36, y - 0.12, middle + 0.11), (x - 0.22, y + 0.12, middle + 0.135), RUBBER,
+            ALL_FACES)
 
 
 def add_sign(builder: MeshBuilder, rng: np.random.Generator) -> None:

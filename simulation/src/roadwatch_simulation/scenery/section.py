@@ -72,7 +72,8 @@ class Section:
 def draw_section(rng: np.random.Generator, *, parking: bool = True) -> Section:
     """A road of the kind that towns have."""
     style = choice(rng, ("town", "town", "town", "house", "house", "tower", "hall", "park", "mixed"))
-    setback = {"town": (0.0, 1.5), "tower": (1.0, 6.0), "house": (3.5, 8.0), "hall": (5.0, 14.0), "park": (6.0, 12.0),
+    setback = {"town": (0.0, 1.5), "tower": (1.0, 6.0), "house": (3.5, 8.0), "hall": (5.0, 14.0),
+        "park": (6.0, 12.0),
                "mixed": (0.5, 7.0)}[style]
     lanes = int(choice(rng, (1, 1, 1, 2, 2, 3)))
     options = ("none", "parallel", "parallel", "across") if lanes < 3 else ("none", "parallel")
@@ -205,7 +206,8 @@ def _add_bays(site: Site, section: Section, span) -> None:
     for index in range(count):
         x = span[0] + (index + 0.5) * along
         yaw = math.pi / 2 if nose_in else math.pi
-        site.bay(x, middle, yaw, section.parking_m if nose_in else along, along if nose_in else section.parking_m)
+        size = (section.parking_m, along) if nose_in else (along, section.parking_m)
+        site.bay(x, middle, yaw, *size)
     if not painted or count == 0:
         return
     edges = span[0] + np.arange(count + 1) * along

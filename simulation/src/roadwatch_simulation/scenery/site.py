@@ -16,7 +16,7 @@ from .trees import build_tree
 FINE_RANGE_M = 65.0
 """Beyond this distance from the origin buildings and trees are built with less detail."""
 DISTINCT_TREES = 6
-"""Models a place draws its trees from; each stands turned and scaled by nothing, so more would hardly show."""
+"""Models a place draws its trees from; each stands turned at random, so more would hardly show."""
 
 
 class Site:
@@ -74,7 +74,9 @@ class Site:
         low, high = np.minimum(first, second), np.maximum(first, second)
         self.layout.roads.append((float(low[0]), float(low[1]), float(high[0]), float(high[1])))
 
-    def slab(self, x_m: tuple[float, float], y_m: tuple[float, float], height_m: float, material: Material) -> None:
+    def slab(
+        self, x_m: tuple[float, float], y_m: tuple[float, float], height_m: float, material: Material
+    ) -> None:
         """Ground raised by a kerb on all sides."""
         self.builder.ground(x_m, y_m, height_m, material)
         lower, upper = (x_m[0], y_m[0], -0.02), (x_m[1], y_m[1], height_m)

@@ -50,7 +50,8 @@ def _add_wood(site: Site, angle: float, distance: float) -> None:
     width, count = rng.uniform(25, 60), 14
     material = Material("far wood", varied(rng, (0.05, 0.075, 0.03), 0.3), surface=Surface.GRASS)
     y = np.linspace(width / 2, -width / 2, count)
-    top = rng.uniform(5, 14) * (0.75 + 0.25 * rng.random(count)) * np.sin(np.linspace(0.35, math.pi - 0.35, count))
+    outline = np.sin(np.linspace(0.35, math.pi - 0.35, count))
+    top = rng.uniform(5, 14) * (0.75 + 0.25 * rng.random(count)) * outline
     low = np.stack([np.zeros(count), y, np.full(count, -0.5)], 1)
     high = np.stack([rng.uniform(0, 3, count), y, top], 1)
     with builder.placed(distance * math.cos(angle), distance * math.sin(angle), angle):

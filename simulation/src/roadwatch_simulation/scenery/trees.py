@@ -12,11 +12,11 @@ from .palette import BARK, PALE_BARK, choice, leaves
 
 TREE_KINDS = ("broad", "broad", "broad", "tall", "conifer", "young", "bare")
 _OUTWARD_SHARE = 0.75
-"""How far a leaf's normal leans towards the crown's own: shades the crown as one body, as dense foliage looks."""
+"""How far a leaf's normal leans towards the crown's own, which shades the crown as one body."""
 
 
 def build_tree(seed: int, kind: str | None = None, *, far: bool = False) -> Model:
-    """A tree; the kind is drawn where none is named. Origin at the foot of the trunk. A far one has fewer leaves."""
+    """A tree, of a drawn kind where none is named; origin at its foot. A far one has fewer leaves."""
     rng = np.random.default_rng([seed, 101])
     return _tree(kind or choice(rng, TREE_KINDS), seed, far)
 
@@ -44,7 +44,8 @@ class FarTreeBuilder(MeshBuilder):
 
 
 def add_blob_of_leaves(
-    builder: MeshBuilder, centre, radii, material: Material, rng: np.random.Generator, leaf_m: float, count: int
+    builder: MeshBuilder, centre, radii, material: Material, rng: np.random.Generator, leaf_m: float,
+    count: int,
 ) -> None:
     """Adds an ellipsoid of loose leaves with an opaque core."""
     centre, radii = np.asarray(centre, dtype=float), np.asarray(radii, dtype=float)
@@ -128,7 +129,8 @@ def _conifer(builder: MeshBuilder, rng: np.random.Generator) -> None:
     at = np.stack([radius * np.cos(angle), radius * np.sin(angle), height * (0.12 + 0.86 * level)], 1)
     add_leaves(builder, at, _unit(radial), material, rng, 0.30)
     foot = (0.0, 0.0, height * 0.14)
-    builder.cylinder(foot, height * 0.8, height * spread * 0.72, _darker(material), sides=10, top_radius_m=0.03)
+    builder.cylinder(foot, height * 0.8, height * spread * 0.72, _darker(material), sides=10,
+        top_radius_m=0.03)
 
 
 def _young(builder: MeshBuilder, rng: np.random.Generator) -> None:

@@ -1,7 +1,8 @@
 """Lays thin sheets (lamps, grilles, seams, windows) onto a curved shell, as seen from one side.
 
-A sheet is drawn in the flat view from an azimuth: `across` runs to the viewer's left-to-right (m), `up` is
-z (m). Each of its points is then carried back along the line of sight onto the outermost triangle there.
+A sheet is drawn in the flat view from an azimuth: `across` runs from the viewer's left to the right (m),
+`up` is z (m). Each of its points is then carried back along the line of sight onto the outermost triangle
+there.
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ class Drape:
         return flat_part + reach[:, None] * self.toward + normals[best] * lift_m, met
 
     def sheet(self, lower: Line, upper: Line, rows: int = 3, lift_m: float = LIFT_M) -> Patch:
-        """A sheet between two lines of equally many points, both from left to right of the viewer's right.
+        """A sheet between two lines of equally many points.
 
         `across` grows along both lines; `upper` lies above `lower`. Quads that miss the shell are left out.
         """

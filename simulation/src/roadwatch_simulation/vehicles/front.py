@@ -38,13 +38,13 @@ def add_front(assembly: Assembly, frame: Frame, shell: Shell, look: Look, plates
     lip = frame.roof(0.03)
     bottom = frame.floor(0.0) + 0.005
     _add_headlamps(assembly, frame, shell, look, lip)
-    _add_grille(assembly, frame, ahead, look, lip, bottom)
+    _add_grille(assembly, frame, ahead, look, lip)
     _add_bumper(assembly, frame, ahead, look, bottom)
     _add_front_plate(assembly, frame, ahead, plates, bottom + (lip - bottom) * 0.42)
 
 
 def _add_headlamps(assembly: Assembly, frame: Frame, shell: Shell, look: Look, lip: float) -> None:
-    corner = Drape(shell.between(frame.x(0.25), frame.x(0.0)), LAMP_VIEW_DEG)
+    corner = Drape(shell.painted(frame.x(0.25), frame.x(0.0)), LAMP_VIEW_DEG)
     height = lip - 0.115
     half = frame.size[1] / 2
     inner = (frame.x(0.0), half * 0.50, height - 0.01)
@@ -78,9 +78,7 @@ def _round(outline: Outline, middle: float, reach: float) -> Outline:
     return ovals
 
 
-def _add_grille(
-    assembly: Assembly, frame: Frame, ahead: Drape, look: Look, lip: float, bottom: float
-) -> None:
+def _add_grille(assembly: Assembly, frame: Frame, ahead: Drape, look: Look, lip: float) -> None:
     half = frame.size[1] / 2 * look.grille_width
     tall = (0.15 if frame.shape.rugged else 0.10) * look.grille_height
     top = lip - 0.055

@@ -26,7 +26,7 @@ from roadwatch_simulation.materials import (
     paint,
     pick,
 )
-from roadwatch_simulation.model import Model
+from roadwatch_simulation.model import Material, Model
 from roadwatch_simulation.vehicles.drape import Drape
 from roadwatch_simulation.vehicles.plates import add_plate, draw_plates
 from roadwatch_simulation.vehicles.shapes import CAB_SHAPE
@@ -67,13 +67,13 @@ def build_lorry(seed: int, size: Size | None, colour: Colour | None) -> Model:
     return assembly.finish("truck", CAB_SHAPE.object_class, (length, width, height))
 
 
-class _Cab(list):
+class _Cab(list[tuple[Patch, Material, str | None]]):
     """Patches of the cab with their materials and parts, before the cab is put in front of the box."""
 
-    def both(self, patch: Patch, material: object, part: str | None = None) -> None:
+    def both(self, patch: Patch, material: Material, part: str | None = None) -> None:
         """Adds a patch and its mirror image."""
-        self.append((patch, material, part and f"{part}_left"))
-        self.append((patch.mirrored(), material, part and f"{part}_right"))
+        self.append((patch, material, None if part is None else f"{part}_left"))
+        self.append((patch.mirrored(), material, None if part is None else f"{part}_right"))
 
 
 def _build_cab(frame: Frame, colour: Colour, rng: np.random.Generator) -> _Cab:

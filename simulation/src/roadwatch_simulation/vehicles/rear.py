@@ -54,8 +54,7 @@ def add_rear(assembly: Assembly, frame: Frame, shell: Shell, look: Look, plates:
 
 
 def _add_tail_lamps(assembly: Assembly, frame: Frame, shell: Shell, look: Look, top: float) -> None:
-    end = frame.shape.bed[1] + 0.003 if frame.shape.bed else 0.80
-    corner = Drape(shell.between(frame.x(1.0), frame.x(end)), LAMP_VIEW_DEG)
+    corner = Drape(shell.painted(frame.x(1.0), frame.x(0.80)), LAMP_VIEW_DEG)
     half = frame.size[1] / 2
     tall = frame.shape.hatch or frame.shape.bed is not None
     height = min(top, 1.12) - (0.20 if tall else 0.125)

@@ -98,10 +98,10 @@ class Shell:
     patch: Patch
     kinds: np.ndarray
 
-    def between(self, rear_x: float, front_x: float) -> Patch:
-        """The triangles whose middles lie between two places along the car (m ahead of its middle)."""
+    def painted(self, rear_x: float, front_x: float) -> Patch:
+        """The painted triangles whose middles lie between two places (m ahead of the car's middle)."""
         middle = self.patch.positions[:, :, 0].mean(axis=1)
-        return self.patch.chosen((middle >= rear_x) & (middle <= front_x))
+        return self.patch.chosen((middle >= rear_x) & (middle <= front_x) & (self.kinds == "paint"))
 
 
 def build_shell(frame: Frame) -> Shell:

@@ -9,7 +9,7 @@ in vec3 model_position;
 uniform int object_id;
 layout(location = 0) out uvec2 ids;
 #else
-layout(location = 0) out float mask;
+layout(location = 0) out vec4 mask;
 #endif
 void main() {
 #if CUTOUT
@@ -18,6 +18,6 @@ void main() {
 #if !MASK
     ids = uvec2(uint(object_id), object_id > 0 ? part : 0u);
 #else
-    mask = 1.0;
+    mask = vec4(1.0);
 #endif
 }

@@ -51,6 +51,21 @@ float openness(vec3 world_position, vec3 model_position, vec3 normal) {
     return open * (1.0 - 0.88 * inner * low * step(0.1, body.z));
 }
 
+#if WET
+uniform sampler2D mirrored;
+uniform vec2 drawn_size_px;
+
+// The scene as the ground mirrors it, over the surroundings' own light; rough ground smears it upwards.
+vec3 mirrored_scene(vec3 surroundings, vec2 bump, float puddle) {
+    vec2 place = gl_FragCoord.xy / drawn_size_px + bump * 0.02 * (1.0 - puddle);
+    float level = mix(2.6, 0.6, puddle);
+    vec2 smear = vec2(0.0, mix(0.022, 0.003, puddle));
+    vec4 seen = textureLod(mirrored, place, level) * 0.4;
+    seen += (textureLod(mirrored, place + smear, level) + textureLod(mirrored, place - smear, level)) * 0.3;
+    return surroundings * (1.0 - seen.a) + undeveloped(seen.rgb / max(seen.a, 0.01)) * seen.a;
+}
+#endif
+
 vec3 radiance_of(vec3 world_position, vec3 world_normal, vec3 model_position, uint material) {
     vec3 to_eye = eye - world_position;
     float distance_m = length(to_eye);
@@ -82,9 +97,10 @@ vec3 radiance_of(vec3 world_position, vec3 world_normal, vec3 model_position, ui
     float grazing = pow(1.0 - facing, 5.0);
 #if WET
     float flat_ground = smoothstep(0.85, 0.97, normal.z) * wetness;
-    float puddle = smoothstep(0.40, 0.62, noise_at(world_position.xy, 0.043, footprint).r);
+    float puddle = smoothstep(0.42, 0.80, noise_at(world_position.xy, 0.043, footprint).r);
+    puddle *= 0.75 + 0.25 * noise_at(world_position.xy, 0.4, footprint).a;
     diffuse *= 1.0 - 0.52 * flat_ground;
-    gloss = mix(gloss, 0.62 + 0.36 * puddle, flat_ground);
+    gloss = mix(gloss, 0.60 + 0.36 * puddle, flat_ground);
     shaded = normalize(mix(shaded, normal + look.bump * 0.12 * (1.0 - puddle), flat_ground));
 #endif
     mirror *= 1.0 + 0.6 * smoothstep(0.5, 0.8, gloss) * (1.0 - metallic);
@@ -94,6 +110,9 @@ vec3 radiance_of(vec3 world_position, vec3 world_normal, vec3 model_position, ui
     vec3 bounce = reflect(-view, shaded);
     float blur = (1.0 - gloss) * (1.0 - gloss);
     vec3 seen = environment(bounce, blur) * mix(0.4, 1.0, open);
+#if WET
+    seen = mix(seen, mirrored_scene(seen, look.bump.xy, puddle), flat_ground);
+#endif
     radiance += fresnel * seen * smoothstep(0.05, 0.35, gloss);
     float power = exp2(1.0 + 10.0 * gloss);
     float lobe = pow(max(dot(bounce, sun_direction), 0.0), power) * (power + 8.0) * 0.04;

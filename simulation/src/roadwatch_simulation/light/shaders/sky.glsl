@@ -45,3 +45,11 @@ vec3 developed(vec3 radiance) {
     x = (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14);
     return pow(clamp(x, 0.0, 1.0), vec3(1.0 / 2.2));
 }
+
+// The radiance that `developed` turns into a colour; white comes back as bright, not as endless.
+vec3 undeveloped(vec3 shown) {
+    vec3 y = pow(clamp(shown, 0.0, 0.96), vec3(2.2));
+    vec3 a = 2.43 * y - 2.51;
+    vec3 b = 0.59 * y - 0.03;
+    return (-b - sqrt(b * b - 0.56 * a * y)) / (2.0 * a) / exposure;
+}
