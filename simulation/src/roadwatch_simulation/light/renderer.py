@@ -18,8 +18,8 @@ from .projection import clip_from_world, frustum_planes
 from .shadows import ShadowPass
 
 
-# Smooth enough once a lens and a sensor have been at it; 2 is better for figures and takes longer.
-SUPERSAMPLING = 1.5
+# Edges at 1.5 are rough enough to cost a detector several cars in a hundred, for a quarter less time.
+SUPERSAMPLING = 2.0
 
 
 class LightRenderer:
