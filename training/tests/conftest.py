@@ -60,5 +60,5 @@ def toy_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session", autouse=True)
 def one_thread() -> None:
-    """On networks this small a second thread waits more than it works, and beside other jobs for very long."""
+    """On networks this small a second thread waits more than it works, the more so beside other jobs."""
     torch.set_num_threads(1)

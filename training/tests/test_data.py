@@ -113,7 +113,8 @@ def test_textures_have_contrast() -> None:
 def test_blots_unseek_what_they_cover() -> None:
     image, rows = white_block()
     rows[0, 1:5] = 150, 80, 153, 83
-    unsought = sum(with_blots(Example(image, rows), np.random.default_rng(s)).rows[0, 5] == 0 for s in range(80))
+    blotted = (with_blots(Example(image, rows), np.random.default_rng(seed)) for seed in range(80))
+    unsought = sum(made.rows[0, 5] == 0 for made in blotted)
     assert 0 < unsought < 80
 
 
@@ -121,7 +122,8 @@ def test_example_number_n_is_always_the_same(toy_folder: Path) -> None:
     store = ImageStore.load(read_folder(toy_folder))
     framing = Framing(128, 96, (0.5, 1.2))
     for number in range(20):
-        first, second = (example(store, framing, Recipe(), np.random.default_rng((1, number))) for _ in range(2))
+        draws = (np.random.default_rng((1, number)) for _ in range(2))
+        first, second = (example(store, framing, Recipe(), rng) for rng in draws)
         np.testing.assert_array_equal(first.image, second.image)
         np.testing.assert_array_equal(first.rows, second.rows)
         assert first.image.shape == (96, 128, 3) and torch.from_numpy(first.rows).isfinite().all()

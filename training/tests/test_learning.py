@@ -97,8 +97,9 @@ def test_the_command_trains_exports_and_scores(
     toy_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture
 ) -> None:
     out = tmp_path / "run"
-    words = ["detector", "--data", str(toy_folder), "--out", str(out), "--width", "small", "--window", "96x64"]
-    assert main([*words, "--batch", "2", "--images", "4", "--workers", "1"]) == 0
+    words = ["detector", "--data", str(toy_folder), "--out", str(out)]
+    quick = ["--width", "small", "--window", "96x64", "--batch", "2", "--images", "4", "--threads", "1"]
+    assert main([*words, *quick]) == 0
     assert (out / "detector.onnx").stat().st_size < 6_000_000
     assert main(["export", "--run", str(out), "--onnx", str(tmp_path / "again.onnx")]) == 0
     assert (tmp_path / "again.onnx").read_bytes() == (out / "detector.onnx").read_bytes()

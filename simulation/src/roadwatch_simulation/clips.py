@@ -10,7 +10,7 @@ import av
 import cv2
 import numpy as np
 
-from .dataset import Parts, new_folder, write_dataset
+from .dataset import Detail, new_folder, write_dataset
 from .errors import SimulationError
 from .progress import Report
 from .scene import Scene
@@ -28,13 +28,13 @@ def write_clips_dataset(
 ) -> None:
     """Renders a scene into a new folder with rig.toml, frames.jsonl, truth.jsonl and one clip per camera.
 
-    Clips are for keeping, so truth holds only the parts that are seen.
+    Clips are for keeping, so truth.jsonl is lean.
     """
     with new_folder(Path(folder)) as work:
         images = work / "images"
         write_dataset(
             scene, images, renderer=renderer, jpeg_quality=UNCOMPRESSED_QUALITY, progress=progress,
-            parts=Parts.SEEN,
+            detail=Detail.LEAN,
         )  # fmt: skip
         for mount in scene.cameras:
             encode_clip(images / mount.name, work / f"{mount.name}.mp4", scene.rate_hz, crf)

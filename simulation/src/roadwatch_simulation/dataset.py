@@ -18,21 +18,19 @@ from .rig import quaternion_wxyz, rig_toml
 from .scene import Scene
 
 NANOSECONDS = 1_000_000_000
-LEAST_PARTS_HEIGHT_PX = 24
-"""On lower objects no part can be told from its neighbours."""
 
 
-class Parts(Enum):
-    """Which parts of objects go into truth.jsonl."""
+class Detail(Enum):
+    """How much goes into truth.jsonl."""
 
-    ALL = "all"
-    SEEN = "seen"
-    """Visible ones only, of objects at least LEAST_PARTS_HEIGHT_PX high: half the file."""
+    FULL = "full"
+    LEAN = "lean"
+    """Objects of which something is seen, without their parts: a tenth of the file."""
 
 
 def write_dataset(
     scene: Scene, folder: Path, *, renderer: str = "light", jpeg_quality: int | None = None,
-    progress: Report | None = None, parts: Parts = Parts.ALL,
+    progress: Report | None = None, detail: Detail = Detail.FULL,
 ) -> None:
     """Renders every frame of every camera into a new folder, which appears only when all of it is there.
 
@@ -50,7 +48,7 @@ def write_dataset(
                 for index, mount in enumerate(scene.cameras):
                     capture = studio.capture(scene, frame, index, jpeg_quality)
                     (work / mount.name / f"{frame:04d}.jpg").write_bytes(capture.jpeg)
-                    truth.write(truth_line(frame, mount.name, capture, parts))
+                    truth.write(truth_line(frame, mount.name, capture, detail))
                     if progress:
                         progress(frame * len(scene.cameras) + index + 1, scene.frames * len(scene.cameras))
 
@@ -68,18 +66,16 @@ def frame_line(scene: Scene, frame: int) -> str:
     )
 
 
-def truth_line(frame: int, camera: str, capture: Capture, parts: Parts = Parts.ALL) -> str:
+def truth_line(frame: int, camera: str, capture: Capture, detail: Detail = Detail.FULL) -> str:
     """A line of truth.jsonl."""
     objects = capture.objects
-    if parts is Parts.SEEN:
-        objects = [_with_seen_parts(thing) for thing in objects]
+    if detail is Detail.LEAN:
+        objects = [_without_parts(thing) for thing in objects if thing["visible_px"]]
     return json.dumps({"frame": frame, "camera": camera, "objects": plain(objects)}) + "\n"
 
 
-def _with_seen_parts(thing: dict) -> dict:
-    _, top, _, bottom = thing["silhouette_px"]
-    large = bottom - top >= LEAST_PARTS_HEIGHT_PX
-    return {**thing, "parts": [part for part in thing["parts"] if part["visible"]] if large else []}
+def _without_parts(thing: dict) -> dict:
+    return {key: value for key, value in thing.items() if key != "parts"}
 
 
 def stamp_text(stamp_ns: int) -> str:

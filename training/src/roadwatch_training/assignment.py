@@ -25,7 +25,7 @@ EPSILON = 1e-9
 
 @dataclass(frozen=True)
 class Targets:
-    """Objects of a batch, padded: boxes (batch, most, 4) px, classes (batch, most), sought and ignored bool."""
+    """Objects of a batch, padded: boxes (batch, most, 4) px; classes, sought, ignored (batch, most)."""
 
     boxes_px: Tensor
     classes: Tensor

@@ -63,9 +63,8 @@ class ExampleBatches(IterableDataset):
         """Batch `number`."""
         plan = self.plan
         numbers = range(number * plan.batch_size, (number + 1) * plan.batch_size)
-        return collated(
-            [example(self.store, plan.framing, plan.recipe, np.random.default_rng((plan.seed, n))) for n in numbers]
-        )
+        draws = (np.random.default_rng((plan.seed, n)) for n in numbers)
+        return collated([example(self.store, plan.framing, plan.recipe, rng) for rng in draws])
 
 
 def batches(store: ImageStore, plan: BatchPlan, first: int, workers: int) -> Iterator[Batch]:

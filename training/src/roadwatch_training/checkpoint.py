@@ -15,7 +15,7 @@ FILE_NAME = "checkpoint.pt"
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """States of network, average and optimiser, batches done, seconds spent, and the settings as a dictionary."""
+    """States of network, average and optimiser, batches done, seconds spent, settings as a dictionary."""
 
     network: dict
     average: dict
@@ -35,7 +35,7 @@ class Checkpoint:
     def read(cls, folder: Path) -> Checkpoint:
         path = folder / FILE_NAME
         if not path.is_file():
-            raise TrainingError(f"`{path}` does not exist: there is nothing to go on from; leave out --resume")
+            raise TrainingError(f"`{path}` does not exist, nothing to go on from: leave out --resume")
         try:
             return cls(**torch.load(path, map_location="cpu", weights_only=True))
         except (RuntimeError, TypeError, EOFError, OSError) as error:

@@ -36,10 +36,11 @@ def _parser() -> argparse.ArgumentParser:
     export.add_argument("--onnx", type=Path, required=True, help="file to write")
     export.set_defaults(run=run_export)
     score = commands.add_parser("score", help="recall and precision on labelled pictures")
-    score.add_argument("--model", type=Path, required=True, help="ONNX file")
-    score.add_argument("--data", type=Path, required=True, action="append", help="folder with labels.jsonl; repeatable")
-    score.add_argument("--threshold", type=float, default=DEFAULT_SCORE_THRESHOLD, help="least score (%(default)s)")
-    score.add_argument("--min-height-px", type=float, default=24.0, help="least height of an object (%(default)s)")
+    add = score.add_argument
+    add("--model", type=Path, required=True, help="ONNX file")
+    add("--data", type=Path, required=True, action="append", help="folder with labels.jsonl; repeatable")
+    add("--threshold", type=float, default=DEFAULT_SCORE_THRESHOLD, help="least score (%(default)s)")
+    add("--min-height-px", type=float, default=24.0, help="least height of an object (%(default)s)")
     score.set_defaults(run=run_score)
     return parser
 
@@ -49,19 +50,20 @@ def _add_detector(commands: argparse._SubParsersAction) -> None:
     train = commands.add_parser("detector", help="train the detector and export it")
     add = train.add_argument
     add("--data", type=Path, required=True, action="append", help="folder with labels.jsonl; repeatable")
-    add("--simulate", type=int, metavar="COUNT", help="first make a --data folder that is missing, with this many pictures")
+    add("--simulate", type=int, metavar="COUNT", help="pictures of a --data folder that is missing")
     add("--out", type=Path, required=True, help="folder for the checkpoint and detector.onnx")
     add("--resume", action="store_true", help="go on from the checkpoint in --out, with its settings")
     add("--width", choices=SHAPES, default=default.width, help="channels of the network (%(default)s)")
-    add("--window", type=_size, default=(default.width_px, default.height_px), metavar="WxH", help="training window (416x256)")
+    window = (default.width_px, default.height_px)
+    add("--window", type=_size, default=window, metavar="WxH", help="cut out for training (416x256)")
     add("--batch", type=int, default=default.batch_size, help="examples per step (%(default)s)")
     add("--images", type=int, default=default.images, help="examples in all (%(default)s)")
     add("--minutes", type=float, help="end by then, whatever --images says")
-    add("--seed", type=int, default=default.seed, help="of weights, examples and simulated pictures (%(default)s)")
+    add("--seed", type=int, default=default.seed, help="of weights, examples, simulation (%(default)s)")
     add("--learning-rate", type=float, default=default.learning_rate, help="at its highest (%(default)s)")
     add("--workers", type=int, default=default.workers, help="processes that make examples (%(default)s)")
     add("--threads", type=int, default=default.threads, help="of the network's steps; 0 for all cores")
-    add("--compile", action="store_true", help="compile the steps: minutes to start, a third faster then (needs g++)")
+    add("--compile", action="store_true", help="starts minutes later, then a third faster (needs g++)")
     train.set_defaults(run=run_detector)
 
 

@@ -78,8 +78,8 @@ def _settings(args: Namespace) -> Settings:
 
 
 def _simulate(folder: Path, count: int, seed: int) -> None:
-    words = ["training", "--out", str(folder), "--count", str(count), "--seed", str(seed)]
-    finished = subprocess.run([sys.executable, "-m", "roadwatch_simulation", *words], check=False)
+    words = ["training", "--output", str(folder), "--count", str(count), "--seed", str(seed)]
+    finished = subprocess.run([sys.executable, "-m", "roadwatch_simulation.cli", *words], check=False)
     if finished.returncode:
         raise TrainingError(f"`roadwatch-simulate {' '.join(words)}` failed (its own message is above)")
 
@@ -89,7 +89,8 @@ def _all_images(folders: list[Path]) -> list[LabelledImage]:
 
 
 def _metadata(settings: Settings, images: int) -> dict[str, str]:
-    return {"author": "Roadwatch", "training": f"{images} presentations, seed {settings.seed}, width {settings.width}"}
+    summary = f"{images} presentations, seed {settings.seed}, width {settings.width}"
+    return {"author": "Roadwatch", "training": summary}
 
 
 def _progress(done: int, of: int) -> None:

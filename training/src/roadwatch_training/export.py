@@ -40,7 +40,7 @@ def export(network: DetectorNetwork, path: Path, metadata: dict[str, str]) -> No
     onnx.checker.check_model(model, full_check=True)
     content = model.SerializeToString()
     if len(content) > MAX_BYTES:
-        raise TrainingError(f"the exported model has {len(content)} bytes, allowed are {MAX_BYTES}: take a smaller --width")
+        raise TrainingError(f"the model has {len(content)} bytes of {MAX_BYTES}: take a smaller --width")
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(content)
 
@@ -78,7 +78,8 @@ class _GraphWriter:
             list(self.constants.values()),
         )
         opset = [helper.make_opsetid("", OPSET)]
-        return helper.make_model(graph, opset_imports=opset, ir_version=IR_VERSION, producer_name="roadwatch-training")
+        names = {"producer_name": "roadwatch-training"}
+        return helper.make_model(graph, opset_imports=opset, ir_version=IR_VERSION, **names)
 
     def _write(self, node: fx.Node) -> None:
         if node.op == "placeholder":
@@ -130,8 +131,8 @@ class _GraphWriter:
             self._write_slice(node)
         elif node.target is functional.interpolate:
             scales = self._constant("doubling", np.array([1, 1, 2, 2], np.float32))
-            options = {"mode": "nearest", "nearest_mode": "floor", "coordinate_transformation_mode": "asymmetric"}
-            self._result(node, "Resize", [self._value(node.args[0]), "", scales], **options)
+            places = {"nearest_mode": "floor", "coordinate_transformation_mode": "asymmetric"}
+            self._result(node, "Resize", [self._value(node.args[0]), "", scales], mode="nearest", **places)
         else:
             raise NotImplementedError(f"no ONNX for `{name}`")
 
@@ -148,7 +149,8 @@ class _GraphWriter:
         self._add(operator, inputs, node.name, **attributes)
 
     def _add(self, operator: str, inputs: list[str], output: str, **attributes: object) -> None:
-        self.nodes.append(helper.make_node(operator, inputs, [output], name=f"{output}/{operator}", **attributes))
+        name = f"{output}/{operator}"
+        self.nodes.append(helper.make_node(operator, inputs, [output], name=name, **attributes))
 
     def _value(self, argument: object) -> str:
         if isinstance(argument, fx.Node):

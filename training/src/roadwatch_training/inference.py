@@ -15,7 +15,11 @@ from .errors import TrainingError
 from .augment.geometry import PADDING_GREY
 
 DEFAULT_SCORE_THRESHOLD = 0.25
-DEFAULT_IOU_THRESHOLD = 0.45
+# The daemon's own configuration: of boxes of one class that overlap more, the best stays.
+MAX_OVERLAP = 0.45
+
+# Left and top, pixels.
+Offset = tuple[int, int]
 
 
 @dataclass(frozen=True)
@@ -41,7 +45,7 @@ class Detector:
         self.height_px, self.width_px = described.shape[2:]
         names = self.session.get_modelmeta().custom_metadata_map.get("names")
         if names is None:
-            raise TrainingError(f"`{path}` has no class names in its metadata: it is not exported by this program")
+            raise TrainingError(f"`{path}` has no class names in its metadata: export it with this program")
         self.class_names = tuple(ast.literal_eval(names).values())
 
     def detect(self, image: np.ndarray, score_threshold: float = DEFAULT_SCORE_THRESHOLD) -> list[Detection]:
@@ -54,11 +58,12 @@ class Detector:
         kept = kept[np.argsort(-scores[kept], kind="stable")]
         boxes = _image_boxes(output[:4, kept].T, gain, offset, image.shape)
         chosen = suppressed(boxes, classes[kept])
-        return [Detection(self.class_names[classes[kept[at]]], float(scores[kept[at]]), boxes[at]) for at in chosen]
+        names = [self.class_names[number] for number in classes[kept]]
+        return [Detection(names[at], float(scores[kept[at]]), boxes[at]) for at in chosen]
 
 
-def letterboxed(image: np.ndarray, width_px: int, height_px: int) -> tuple[np.ndarray, float, tuple[int, int]]:
-    """The image resized with its aspect kept and centred on grey; output pixels per image pixel; left and top."""
+def letterboxed(image: np.ndarray, width_px: int, height_px: int) -> tuple[np.ndarray, float, Offset]:
+    """The image resized with its aspect kept and centred on grey; pixels per image pixel; place."""
     gain = min(width_px / image.shape[1], height_px / image.shape[0])
     width, height = round(image.shape[1] * gain), round(image.shape[0] * gain)
     left, top = (width_px - width) // 2, (height_px - height) // 2
@@ -68,16 +73,16 @@ def letterboxed(image: np.ndarray, width_px: int, height_px: int) -> tuple[np.nd
     return canvas, gain, (left, top)
 
 
-def _image_boxes(rows: np.ndarray, gain: float, offset: tuple[int, int], shape: tuple[int, ...]) -> np.ndarray:
+def _image_boxes(rows: np.ndarray, gain: float, offset: Offset, shape: tuple[int, ...]) -> np.ndarray:
     """From centre and size in the input to edges in the image, clipped to it."""
     corners = np.concatenate((rows[:, :2] - rows[:, 2:] / 2, rows[:, :2] + rows[:, 2:] / 2), axis=1)
     boxes = (corners - np.array([*offset, *offset], np.float32)) / np.float32(gain)
     return boxes.clip(0, np.array([shape[1], shape[0]] * 2, np.float32))
 
 
-def suppressed(boxes: np.ndarray, classes: np.ndarray, iou_threshold: float = DEFAULT_IOU_THRESHOLD) -> list[int]:
+def suppressed(boxes: np.ndarray, classes: np.ndarray) -> list[int]:
     """Of boxes sorted best first, those that overlap no better one of their class."""
-    overlaps = pairwise_iou_array(boxes, boxes) > iou_threshold
+    overlaps = pairwise_iou_array(boxes, boxes) > MAX_OVERLAP
     kept: list[int] = []
     for at in range(len(boxes)):
         if not any(overlaps[at, better] and classes[at] == classes[better] for better in kept):

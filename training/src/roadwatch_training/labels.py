@@ -1,4 +1,4 @@
-"""Labelled training images: `images/*.jpg` and `labels.jsonl`, as `roadwatch-simulate training` writes them."""
+"""Labelled images: `images/*.jpg` and `labels.jsonl`, as `roadwatch-simulate training` writes them."""
 
 from __future__ import annotations
 

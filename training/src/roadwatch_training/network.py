@@ -214,7 +214,7 @@ def corner_boxes(raw: Tensor, cells: Cells) -> Tensor:
 
 
 class DecodedNetwork(nn.Module):
-    """What is exported: (batch, 4 + classes, cells) with centre x, y, width, height in pixels, then scores."""
+    """What is exported: (batch, 4 + classes, cells): centre x, y, width, height in pixels, then scores."""
 
     def __init__(self, network: DetectorNetwork, width_px: int, height_px: int) -> None:
         super().__init__()

@@ -149,7 +149,8 @@ class ProgressReport:
         if not self.since:
             return
         training, count = self.training, len(self.since)
-        mean = {part: sum(getattr(one, part) for one in self.since) / count for part in ("score", "overlap", "reach")}
+        parts = ("score", "overlap", "reach")
+        mean = {part: sum(getattr(one, part) for one in self.since) / count for part in parts}
         speed = count * training.settings.batch_size / max(time.monotonic() - self.last_said, 1e-9)
         here = time.monotonic() - training.began
         gained = max(training.progress - self.first_progress, 1e-9)

@@ -15,7 +15,7 @@ MIN_LEFT_SHARE = 0.35
 
 @dataclass(frozen=True)
 class Example:
-    """`image` uint8 (height, width, 3) RGB; `rows` float32 (n, 6): class, left, top, right, bottom, sought."""
+    """`image` uint8 (height, width, 3) RGB; `rows` float32 (n, 6): class, box edges, 1 if sought."""
 
     image: np.ndarray
     rows: np.ndarray

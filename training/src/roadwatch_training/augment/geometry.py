@@ -42,7 +42,11 @@ def random_cut(image: np.ndarray, rows: np.ndarray, framing: Framing, rng: np.ra
 
 
 def _window_corner(
-    image: np.ndarray, rows: np.ndarray, source: tuple[float, float], object_share: float, rng: np.random.Generator
+    image: np.ndarray,
+    rows: np.ndarray,
+    source: tuple[float, float],
+    object_share: float,
+    rng: np.random.Generator,
 ) -> tuple[int, int]:
     """Top left of the window, picture pixels; outside the picture only where the window is larger."""
     sought = rows[rows[:, 5] > 0]
@@ -63,7 +67,11 @@ def _window_corner(
 
 
 def _resampled(
-    image: np.ndarray, corner: tuple[int, int], scale: tuple[float, float], framing: Framing, rng: np.random.Generator
+    image: np.ndarray,
+    corner: tuple[int, int],
+    scale: tuple[float, float],
+    framing: Framing,
+    rng: np.random.Generator,
 ) -> np.ndarray:
     """The window resized as a whole, then laid on grey, so that its borders blend as the letterbox's do."""
     left, top = max(corner[0], 0), max(corner[1], 0)

@@ -1,4 +1,4 @@
-"""Objects moved onto other backgrounds, backgrounds covered in part: what is an object must be told by itself."""
+"""Objects moved onto other backgrounds and covered in part, so that they are known by themselves."""
 
 from __future__ import annotations
 
@@ -42,7 +42,8 @@ def _free_place(
         top = row[2] + round(rng.normal(0, size_px[1] * 0.08))
         moved[1:5] = left, top, left + width, top + height
         inside = top >= 0 and top + height <= size_px[1] and left + width <= size_px[0]
-        if inside and (len(rows) == 0 or pairwise_iou_array(moved[None, 1:5], rows[:, 1:5]).max() < MAX_PASTE_OVERLAP):
+        overlaps = pairwise_iou_array(moved[None, 1:5], rows[:, 1:5])
+        if inside and overlaps.max(initial=0.0) < MAX_PASTE_OVERLAP:
             return moved
     return None
 

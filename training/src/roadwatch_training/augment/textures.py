@@ -24,7 +24,8 @@ def fractal_noise(width_px: int, height_px: int, rng: np.random.Generator) -> np
         coarse = rng.standard_normal((rows, cells, 3), np.float32)
         grey = coarse.mean(2, keepdims=True) * 1.7
         coarse = coarse + (grey - coarse) * np.float32(rng.uniform(0.5, 1.0))
-        total += np.float32(contrast) * cv2.resize(coarse, (width_px, height_px), interpolation=cv2.INTER_CUBIC)
+        fine = cv2.resize(coarse, (width_px, height_px), interpolation=cv2.INTER_CUBIC)
+        total += np.float32(contrast) * fine
         cells, contrast = cells * 2, contrast * persistence
     total *= rng.uniform(25, 60) / (total.std() + 1e-6)
     total += rng.uniform(50, 200, 3).astype(np.float32)
@@ -44,7 +45,11 @@ def dead_leaves(width_px: int, height_px: int, rng: np.random.Generator) -> np.n
 
 
 def _leaf(
-    canvas: np.ndarray, centre: tuple[int, int], size: float, colour: tuple[int, ...], rng: np.random.Generator
+    canvas: np.ndarray,
+    centre: tuple[int, int],
+    size: float,
+    colour: tuple[int, ...],
+    rng: np.random.Generator,
 ) -> None:
     kind = rng.integers(4)
     half = (max(1, round(size / 2)), max(1, round(size * rng.uniform(0.15, 1.0))))
