@@ -32,7 +32,7 @@ pub struct DetectorConfig {
 }
 
 /// `None` when something that must be there is missing or wrong; the mistake is noted.
-pub(super) fn read(detector: &Reader<'_, '_>, cameras: usize) -> Option<DetectorConfig> {
+pub(super) fn read(detector: &Reader<'_, '_>) -> Option<DetectorConfig> {
     let model = detector.required_path("model");
     let families = Family::ALL.map(|family| (family.as_str(), Some(family)));
     let families: Vec<_> = families.into_iter().chain([("auto", None)]).collect();
@@ -41,7 +41,7 @@ pub(super) fn read(detector: &Reader<'_, '_>, cameras: usize) -> Option<Detector
         model: model.clone().unwrap_or_default(),
         family,
         class_names: detector.texts("class_names"),
-        network: network(detector, cameras),
+        network: network(detector),
         filter: filter(detector),
         iou_threshold: detector
             .number("iou_threshold", 0.0..=1.0)
@@ -61,7 +61,10 @@ pub(super) fn read(detector: &Reader<'_, '_>, cameras: usize) -> Option<Detector
     })
 }
 
-fn network(detector: &Reader<'_, '_>, cameras: usize) -> NetworkOptions {
+/// On a processor a batch takes as long as its images one after the other, and all wait for the last.
+const DEFAULT_MAX_BATCH: usize = 1;
+
+fn network(detector: &Reader<'_, '_>) -> NetworkOptions {
     let cores = available_parallelism().map_or(1, NonZero::get);
     let threads = detector.integer("threads", 0..=256).unwrap_or(0) as usize;
     let size = detector.numbers::<2>("input_size_px");
@@ -79,7 +82,7 @@ fn network(detector: &Reader<'_, '_>, cameras: usize) -> NetworkOptions {
         }),
         max_batch: detector
             .integer("max_batch", 1..=255)
-            .map_or(cameras.max(1), |batch| batch as usize),
+            .map_or(DEFAULT_MAX_BATCH, |batch| batch as usize),
     }
 }
 

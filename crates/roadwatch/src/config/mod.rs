@@ -91,7 +91,6 @@ fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<PathBuf>) -> Config 
     let camera_tables = root.tables("camera");
     let head = cameras::read_head(rig, dataset);
     let rig_config = cameras::read(rig, &head, &camera_tables);
-    let cameras = rig_config.as_ref().map_or(1, |rig| rig.cameras.len());
     if !detector.is_present() {
         root.note(
             "detector",
@@ -102,7 +101,7 @@ fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<PathBuf>) -> Config 
     let config = Config {
         notes,
         node: node::read(node),
-        detector: detector::read(detector, cameras),
+        detector: detector::read(detector),
         rig: rig_config,
         locate: locate::read(locate),
         scene_timeout: timeout.map_or(
