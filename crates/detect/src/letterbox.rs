@@ -1,16 +1,15 @@
 //! Letterbox: an image resized with its aspect kept, padded to the network's input, as planar floats.
 //!
-//! The resize is the 11-bit fixed-point bilinear one of OpenCV's `INTER_LINEAR`, bit by bit, because
-//! networks are trained and judged behind that one; resize, padding, channel order and scaling are
-//! one pass over the image.
+//! The resize is OpenCV's `INTER_LINEAR`, bit by bit (module `bilinear`), because networks are trained and judged
+//! behind that one; resize, padding, channel order and scaling are one pass over the image.
 
+mod bilinear;
+
+use bilinear::{CHANNELS, Columns, Row, Tap, blend, taps};
 use roadwatch_core::{BoxPx, ImageSize, Pixels};
 
 /// Grey that YOLO families pad with, of 255.
 const PADDING: f32 = 114.0;
-const CHANNELS: usize = 3;
-/// Fixed-point weights sum to this, as in OpenCV (`INTER_RESIZE_COEF_SCALE`).
-const WEIGHT_ONE: f64 = 2048.0;
 
 /// Where the image sits inside the network's input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,24 +38,15 @@ pub struct Letterbox {
     gain: f32,
     left: usize,
     top: usize,
-    columns: Vec<Tap>,
+    columns: Columns,
     rows: Vec<Tap>,
-}
-
-/// Two neighbouring source positions and their fixed-point weights.
-#[derive(Debug, Clone, Copy)]
-struct Tap {
-    near: usize,
-    far: usize,
-    near_weight: u32,
-    far_weight: u32,
 }
 
 /// Scratch rows of [`Letterbox::fill`]; kept between frames so that none is allocated per frame.
 #[derive(Debug, Default)]
 pub struct Scratch {
-    near: Vec<i16>,
-    far: Vec<i16>,
+    near: Row,
+    far: Row,
 }
 
 impl Letterbox {
@@ -87,7 +77,7 @@ impl Letterbox {
             gain: gain as f32,
             left: bar(input.width_px, width),
             top: bar(input.height_px, height),
-            columns: taps(image.width_px as usize, width),
+            columns: Columns::new(image.width_px as usize, width),
             rows: taps(image.height_px as usize, height),
         }
     }
@@ -112,24 +102,22 @@ impl Letterbox {
         assert_eq!(image.size(), self.image, "image size of the letterbox");
         assert_eq!(input.len(), Self::input_len(self.input), "input size");
         self.fill_bars(input);
-        let width = self.columns.len();
-        scratch.near.resize(CHANNELS * width, 0);
-        scratch.far.resize(CHANNELS * width, 0);
-        let (mut near_row, mut far_row) = (usize::MAX, usize::MAX);
+        let stride = self.image.width_px as usize * CHANNELS;
+        let from_row = |row: usize| &image.bgr()[row * stride..];
+        let Scratch { near, far } = scratch;
+        near.forget();
+        far.forget();
         for (y, tap) in self.rows.iter().enumerate() {
-            if far_row == tap.near {
-                std::mem::swap(&mut scratch.near, &mut scratch.far);
-                std::mem::swap(&mut near_row, &mut far_row);
+            if far.is(tap.near) {
+                std::mem::swap(near, far);
             }
-            if near_row != tap.near {
-                self.resize_row(image, tap.near, &mut scratch.near);
-                near_row = tap.near;
+            if !near.is(tap.near) {
+                near.resize(tap.near, from_row(tap.near), &self.columns);
             }
-            if far_row != tap.far {
-                self.resize_row(image, tap.far, &mut scratch.far);
-                far_row = tap.far;
+            if !far.is(tap.far) {
+                far.resize(tap.far, from_row(tap.far), &self.columns);
             }
-            self.blend_rows(*tap, y, scratch, input);
+            blend(near, far, *tap, self.scale(), self.row_of_planes(y, input));
         }
     }
 
@@ -167,82 +155,24 @@ impl Letterbox {
         }
     }
 
-    /// One source row resized horizontally, planar blue, green, red, weighted by 128: OpenCV drops the four
-    /// low bits of its weight of 2048 before it goes on, after which 16 bits are enough.
-    fn resize_row(&self, image: &Pixels, row: usize, out: &mut [i16]) {
-        let stride = self.image.width_px as usize * CHANNELS;
-        let source = &image.bgr()[row * stride..];
-        let width = self.columns.len();
-        let (blue, rest) = out.split_at_mut(width);
-        let (green, red) = rest.split_at_mut(width);
-        let taps = self.columns.iter();
-        for (((tap, blue), green), red) in taps.zip(blue).zip(green).zip(red) {
-            let start = tap.near * CHANNELS;
-            // An image one pixel wide has no second pixel.
-            let Some(pair) = source
-                .get(start..)
-                .and_then(<[u8]>::first_chunk::<{ 2 * CHANNELS }>)
-            else {
-                [*blue, *green, *red] = std::array::from_fn(|c| i16::from(source[start + c]) << 7);
-                continue;
-            };
-            let mix = |c: usize| {
-                let near = u32::from(pair[c]) * tap.near_weight;
-                ((near + u32::from(pair[CHANNELS + c]) * tap.far_weight) >> 4) as i16
-            };
-            *blue = mix(0);
-            *green = mix(1);
-            *red = mix(2);
-        }
-    }
-
-    fn blend_rows(&self, tap: Tap, y: usize, scratch: &Scratch, input: &mut [f32]) {
-        let width = self.columns.len();
+    /// Row `y` of the resized image in each plane of the input: blue, green, red.
+    fn row_of_planes<'input>(
+        &self,
+        y: usize,
+        input: &'input mut [f32],
+    ) -> [&'input mut [f32]; CHANNELS] {
         let input_width = self.input.width_px as usize;
+        let start = (self.top + y) * input_width + self.left;
+        let row = start..start + self.columns.len();
         let plane_len = input_width * self.input.height_px as usize;
-        let scale = self.scale();
-        let weights = (tap.near_weight as i16, tap.far_weight as i16);
-        for channel in 0..CHANNELS {
-            let plane = match self.values {
-                Values::RgbUnit => CHANNELS - 1 - channel,
-                Values::BgrByte => channel,
-            };
-            let start = plane * plane_len + (self.top + y) * input_width + self.left;
-            let near = &scratch.near[channel * width..][..width];
-            let far = &scratch.far[channel * width..][..width];
-            blend(near, far, weights, scale, &mut input[start..start + width]);
+        let (first, rest) = input.split_at_mut(plane_len);
+        let (second, third) = rest.split_at_mut(plane_len);
+        let mut planes = [first, second, third].map(|plane| &mut plane[row.clone()]);
+        if self.values == Values::RgbUnit {
+            planes.reverse();
         }
+        planes
     }
-}
-
-/// Two rows mixed vertically, with OpenCV's shifts, which set the rounding: the high halves of 16-bit
-/// products are one instruction for eight of them, so everything before the floats stays in 16 bits.
-fn blend(near: &[i16], far: &[i16], weights: (i16, i16), scale: f32, out: &mut [f32]) {
-    let high = |weight: i16, value: i16| ((i32::from(weight) * i32::from(value)) >> 16) as i16;
-    for ((out, &near), &far) in out.iter_mut().zip(near).zip(far) {
-        let mixed = high(weights.0, near) + high(weights.1, far);
-        *out = f32::from((mixed + 2) >> 2) * scale;
-    }
-}
-
-/// For each of `resized` positions the two of `source` it lies between, pixel centres aligned. The far one
-/// is the near one's successor, also at the end, where all weight is on it.
-fn taps(source: usize, resized: usize) -> Vec<Tap> {
-    let step = source as f64 / resized as f64;
-    let last = source - 1;
-    (0..resized)
-        .map(|at| {
-            let position = ((at as f64 + 0.5) * step - 0.5).clamp(0.0, last as f64);
-            let near = (position as usize).min(last.saturating_sub(1));
-            let far_share = position - near as f64;
-            Tap {
-                near,
-                far: (near + 1).min(last),
-                near_weight: ((1.0 - far_share) * WEIGHT_ONE).round_ties_even() as u32,
-                far_weight: (far_share * WEIGHT_ONE).round_ties_even() as u32,
-            }
-        })
-        .collect()
 }
 
 #[cfg(test)]
