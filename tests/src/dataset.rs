@@ -111,6 +111,8 @@ fn object(truth: &TruthObject) -> Value {
         "truncated": truth.truncated,
         "occluded": truth.occluded,
         "center_base_m": [center.x(), center.y(), center.z()],
+        "size_lwh_m": truth.size.map(|size| [size.length_m, size.width_m, size.height_m]),
+        "yaw_base_rad": truth.yaw_rad,
     })
 }
 

@@ -1,9 +1,8 @@
 //! Rigs to look with.
 
-use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use roadwatch_core::{
-    CameraModel, CameraName, Distortion, ImageSize, Intrinsics, MeasuredFocal, Rig, RigCamera,
-    space::Transform,
+    CameraModel, CameraName, Distortion, ImageSize, Intrinsics, MeasuredFocal, Mount, Rig,
+    RigCamera,
 };
 
 /// Every camera's image.
@@ -46,15 +45,11 @@ pub fn six_cameras() -> Rig {
 }
 
 fn camera(name: &str, focal_px: f64, position_m: [f64; 3], azimuth_deg: f64) -> RigCamera {
-    // Columns: the optical x, y and z axes in base_link, for a camera that looks along x.
-    let ahead = Rotation3::from_matrix_unchecked(Matrix3::new(
-        0.0, 0.0, 1.0, //
-        -1.0, 0.0, 0.0, //
-        0.0, -1.0, 0.0,
-    ));
-    let azimuth = Rotation3::from_axis_angle(&Vector3::z_axis(), azimuth_deg.to_radians());
-    let pitch = Rotation3::from_axis_angle(&Vector3::y_axis(), PITCH_DEG.to_radians());
-    let rotation = UnitQuaternion::from_rotation_matrix(&(azimuth * pitch * ahead));
+    let mount = Mount {
+        yaw_rad: azimuth_deg.to_radians(),
+        pitch_rad: PITCH_DEG.to_radians(),
+        ..Mount::ahead(position_m)
+    };
     RigCamera {
         name: CameraName::new(name).expect("a legal name"),
         model: CameraModel {
@@ -67,10 +62,7 @@ fn camera(name: &str, focal_px: f64, position_m: [f64; 3], azimuth_deg: f64) -> 
             },
             distortion: Distortion::None,
         },
-        base_from_optical: Transform::new(Isometry3::from_parts(
-            Translation3::from(position_m),
-            rotation,
-        )),
+        base_from_optical: mount.base_from_optical(),
         measured_focal: Some(MeasuredFocal {
             focal_px,
             image_height_px: IMAGE.height_px,

@@ -102,11 +102,14 @@ impl Eye {
             truth: TruthObject {
                 id: format!("actor {at}"),
                 class: actor.class.to_string(),
+                label: None,
                 box_px: Some(box_px),
                 silhouette_px: Some(silhouette_px),
                 truncated: f64::from(1.0 - inside).max(0.0),
                 occluded: 0.0,
                 center: Point::new(place.x, place.y, center_z_m),
+                size: Some(actor.size),
+                yaw_rad: Some(base_from_actor.rotation.angle()),
             },
         })
     }

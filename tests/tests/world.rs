@@ -105,10 +105,13 @@ fn what_is_written_as_a_dataset_is_read_as_it_was() {
             let written = &seen.truth;
             // The last digit of a double may change on its way through JSON.
             assert!((read.center.coords - written.center.coords).norm() < 1e-9);
-            let center = written.center;
+            let yaws = read.yaw_rad.zip(written.yaw_rad);
+            assert!(yaws.is_some_and(|(read, written)| (read - written).abs() < 1e-9));
+            let (center, yaw_rad) = (written.center, written.yaw_rad);
             assert_eq!(
                 TruthObject {
                     center,
+                    yaw_rad,
                     ..read.clone()
                 },
                 *written

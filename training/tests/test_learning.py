@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from roadwatch_training.augment.geometry import Framing
 from roadwatch_training.augment.recipe import Recipe
 from roadwatch_training.batches import BatchPlan, batches
 from roadwatch_training.cli import main
+from roadwatch_training.errors import TrainingError
 from roadwatch_training.export import export
 from roadwatch_training.images import ImageStore, read_rgb
 from roadwatch_training.inference import Detector, letterboxed
@@ -91,6 +93,20 @@ def test_a_resumed_training_ends_where_an_uninterrupted_one_does(toy_folder: Pat
     second.run()
     for name, value in whole.average.network.state_dict().items():
         torch.testing.assert_close(value, second.average.network.state_dict()[name], msg=name)
+
+
+def test_a_training_may_begin_with_the_weights_of_another(toy_folder: Path, tmp_path: Path) -> None:
+    store = ImageStore.load(read_folder(toy_folder))
+    settings = Settings(width="small", width_px=64, height_px=64, batch_size=2, images=4, workers=0)
+    first = Training(settings, store, tmp_path / "first", print)
+    first.run()
+    second = Training(replace(settings, seed=2), store, tmp_path / "second", print)
+    second.start_from(tmp_path / "first")
+    for name, value in first.average.network.state_dict().items():
+        torch.testing.assert_close(value, second.network.state_dict()[name], msg=name)
+    other = Training(replace(settings, width="medium"), store, tmp_path / "third", print)
+    with pytest.raises(TrainingError, match="width small, not medium"):
+        other.start_from(tmp_path / "first")
 
 
 def test_the_command_trains_exports_and_scores(

@@ -7,6 +7,7 @@
 //! [`FrameSource`]: roadwatch_core::FrameSource
 
 mod any_recording;
+pub mod camera_info;
 pub mod counted;
 pub mod frame_rate;
 pub mod image_sequence;
@@ -21,14 +22,15 @@ mod video_clock;
 pub mod video_file;
 
 pub use any_recording::AnyRecording;
+pub use camera_info::{CameraInfo, CameraInfoError};
 pub use counted::{Counted, DecodeCount};
 pub use frame_rate::FrameRate;
 pub use image_sequence::{ImageSequence, SequenceError, StampedFile};
 pub use playback::{Due, Pace, Playback, PlaybackOptions, Repeat, Speed};
 pub use player::{Player, Recording};
 pub use rig_dataset::{
-    DatasetError, DatasetFrame, FramesProblem, RigDataset, RigProblem, read_rig_file,
+    DatasetError, DatasetFrame, DatasetImage, FramesProblem, RigDataset, RigProblem, read_rig_file,
 };
 pub use span::Span;
 pub use still_image::StillImage;
-pub use video_file::{VideoError, VideoFile};
+pub use video_file::{VideoError, VideoFile, video_size};

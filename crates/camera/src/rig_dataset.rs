@@ -38,6 +38,17 @@ pub struct DatasetFrame {
     pub world_from_base: Option<Isometry3<f64>>,
 }
 
+/// An image of a dataset that is laid out in another way.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DatasetImage {
+    /// Index of its camera.
+    pub camera: usize,
+    /// Number of its frame.
+    pub number: u64,
+    /// The file, and when it was captured.
+    pub image: StampedFile,
+}
+
 /// A rig dataset, read and checked; images and clips are only read when they are played.
 #[derive(Clone, Debug)]
 pub struct RigDataset {
@@ -79,6 +90,52 @@ impl RigDataset {
             cameras,
             frames,
             stored,
+        })
+    }
+
+    /// A dataset of images that are laid out in another way. Images of one number make one frame; numbers and each
+    /// camera's stamps must rise.
+    ///
+    /// # Errors
+    /// When a camera has no image, or its stamps do not rise.
+    pub fn from_images(
+        folder: &Path,
+        cameras: Vec<RigCamera>,
+        images: Vec<DatasetImage>,
+    ) -> Result<Self, DatasetError> {
+        let mut frames: Vec<DatasetFrame> = Vec::new();
+        let mut files = vec![Vec::new(); cameras.len()];
+        for DatasetImage {
+            camera,
+            number,
+            image,
+        } in images
+        {
+            if frames.last().is_none_or(|frame| frame.number != number) {
+                frames.push(DatasetFrame {
+                    number,
+                    stamps: vec![None; cameras.len()],
+                    world_from_base: None,
+                });
+            }
+            if let Some(frame) = frames.last_mut() {
+                frame.stamps[camera] = Some(image.stamp);
+            }
+            files[camera].push(image);
+        }
+        let stored = cameras.iter().zip(files).map(|(camera, files)| {
+            let images = ImageSequence::from_files(files, camera.model.size);
+            let images = images.map_err(|source| DatasetError::Sequence {
+                camera: camera.name.clone(),
+                source,
+            });
+            Ok(Stored::Images(images?))
+        });
+        Ok(Self {
+            folder: folder.to_owned(),
+            stored: stored.collect::<Result<_, DatasetError>>()?,
+            cameras,
+            frames,
         })
     }
 

@@ -308,6 +308,18 @@ impl Recording for VideoFile {
     }
 }
 
+/// Width and height of a video's frames, for those who do not know them beforehand.
+///
+/// # Errors
+/// When the file cannot be read or is no video.
+pub fn video_size(path: &Path) -> Result<ImageSize, VideoError> {
+    let capture = open_capture(path)?;
+    frame_size(&capture).map_err(|source| VideoError::OpenCv {
+        file: path.to_owned(),
+        source,
+    })
+}
+
 /// Names FFmpeg as the back end, because others take file names for patterns or pipelines.
 fn open_capture(path: &Path) -> Result<VideoCapture, VideoError> {
     let file = path.to_owned();

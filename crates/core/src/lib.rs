@@ -10,6 +10,7 @@ pub mod distortion;
 mod error_chain;
 pub mod frame;
 pub mod location;
+pub mod mount;
 pub mod name;
 pub mod object_class;
 pub mod rig;
@@ -23,7 +24,11 @@ pub use detection::{BoxPx, Detection, Score};
 pub use distortion::Distortion;
 pub use error_chain::error_chain;
 pub use frame::{CameraId, DecodeError, DecodeImage, Frame, Image, PerFrame, Pixels};
-pub use location::{Heading, Located, Location, Method, Oriented, Prior, SizeLwh};
+pub use location::{
+    Heading, HeadingCandidate, HeadingCandidates, Located, Location, Method, Oriented, Prior,
+    SizeLwh,
+};
+pub use mount::Mount;
 pub use name::CameraName;
 pub use object_class::ObjectClass;
 pub use rig::{MeasuredFocal, Rig, RigCamera};

@@ -4,6 +4,7 @@ use crate::{
     detection::Detection,
     space::{BaseLink, Covariance, Point},
 };
+use arrayvec::ArrayVec;
 use std::{fmt, time::Duration};
 
 /// Length, width and height of an object, metres.
@@ -28,15 +29,18 @@ pub enum Method {
     Table,
     /// Bottom edge of the box on the ground plane.
     Ground,
+    /// All four edges of the box, the ground and the class's hull together.
+    Fused,
 }
 
 impl Method {
     /// Every method, in the order of reports.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 5] = [
         Self::TriangleMeasuredF,
         Self::TriangleFy,
         Self::Table,
         Self::Ground,
+        Self::Fused,
     ];
 
     /// The method's name in configuration, messages and reports.
@@ -47,6 +51,7 @@ impl Method {
             Self::TriangleFy => "triangle_fy",
             Self::Table => "table",
             Self::Ground => "ground",
+            Self::Fused => "fused",
         }
     }
 
@@ -78,6 +83,9 @@ pub struct Location {
     pub size: SizeLwh,
     /// How it was found.
     pub method: Method,
+    /// The headings that the box's shape allows, likeliest first; empty where the method says nothing of
+    /// them.
+    pub headings: HeadingCandidates,
     /// True when this is an earlier location kept because this frame gave none (docs/method.md, section 3).
     pub held: bool,
 }
@@ -101,6 +109,21 @@ pub struct Heading {
     /// Standard deviation, radians.
     pub std_dev_rad: f64,
 }
+
+/// One heading that a box's shape allows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeadingCandidate {
+    /// Which way, and how sharply the box says so.
+    pub heading: Heading,
+    /// Its probability among the candidates of one location, which sum to 1.
+    pub weight: f64,
+}
+
+/// Front and back look alike to a box, and so do a turn to the left and one to the right of the ray: four.
+pub const MAX_HEADING_CANDIDATES: usize = 4;
+
+/// The headings that a box's shape allows, likeliest first.
+pub type HeadingCandidates = ArrayVec<HeadingCandidate, MAX_HEADING_CANDIDATES>;
 
 /// A detection with its place.
 #[derive(Clone, Debug, PartialEq)]

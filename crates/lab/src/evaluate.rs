@@ -1,15 +1,21 @@
 //! Evaluation: detections of a whole dataset against its labels, every method side by side.
 
 use crate::{
+    bootstrap::Intervals,
     matching::{TruthFilter, match_image},
     recorder::Recorded,
-    report::{DetectionScore, MethodReport, Report},
-    score::{Sample, score_distance, score_location, share},
-    truth::{Truth, TruthObject},
+    report::{DetectionScore, Report},
+    sample::{Estimator, Sample, Target},
+    sample_table::SampleTable,
+    score::{Figures, share},
+    truth::Truth,
 };
 use roadwatch_camera::RigDataset;
-use roadwatch_core::{CameraId, Detection, Location, Locator, Method, Rig, RigCamera, Timestamp};
-use std::collections::{BTreeMap, HashMap};
+use roadwatch_core::{CameraId, Detection, Heading, Location, Locator, Method, Rig, Timestamp};
+use std::{
+    collections::{BTreeMap, HashMap},
+    sync::Arc,
+};
 
 /// A method with its locators, one per camera of the rig.
 pub struct MethodUnderTest {
@@ -48,9 +54,19 @@ pub struct Evaluation<'a> {
 struct Pair<'a> {
     camera: usize,
     detection: &'a Detection,
-    /// Where it was said to be; `None` when no place was published for it.
-    published: Option<&'a Location>,
-    object: &'a TruthObject,
+    /// Where it was said to be, and which way it points; `None` when no place was published for it.
+    published: Option<(&'a Location, Option<Heading>)>,
+    target: Arc<Target>,
+}
+
+/// Everything recorded, matched to the labels.
+#[derive(Default)]
+struct Matched<'a> {
+    images: usize,
+    perceived: usize,
+    false_alarms: usize,
+    targets: Vec<Arc<Target>>,
+    pairs: Vec<Pair<'a>>,
 }
 
 /// Matches everything recorded to the labels, and scores each method on the same matches.
@@ -60,61 +76,45 @@ pub fn evaluate(
     recorded: &[Recorded],
     methods: &[MethodUnderTest],
 ) -> Report {
-    let by_moment: HashMap<_, _> = recorded
-        .iter()
-        .map(|frame| ((frame.camera, frame.captured_at), frame))
-        .collect();
-    let mut pairs = Vec::new();
-    let mut counts = Counts::default();
-    for (camera, captured_at, number) in evaluation.images() {
-        let name = evaluation.rig.camera(camera).name.as_str();
-        let objects = evaluation.truth.objects(number, name);
-        let found = by_moment.get(&(camera, captured_at));
-        counts.images += 1;
-        if found.is_none() && evaluation.lost_images == LostImages::Ignore {
-            continue;
+    let matched = evaluation.matched(recorded);
+    let (mut samples, mut unavailable) = (matched.published(), BTreeMap::new());
+    for MethodUnderTest { method, locators } in methods {
+        match locators {
+            Ok(locators) => samples.extend(matched.located_by(*method, locators)),
+            Err(reason) => {
+                unavailable.insert(*method, reason.clone());
+            }
         }
-        counts.objects += objects
-            .iter()
-            .filter(|object| evaluation.filter.admits(object))
-            .count();
-        let Some(frame) = found else {
-            continue;
-        };
-        let detections: Vec<&Detection> = frame.detections().collect();
-        let matches = match_image(&detections, objects, evaluation.filter);
-        counts.perceived += 1;
-        counts.found += matches.pairs.len();
-        counts.false_alarms += matches.false_alarms.len();
-        pairs.extend(matches.pairs.iter().map(|&(detection, object)| Pair {
-            camera: camera.index(),
-            detection: detections[detection],
-            published: frame.location(detection),
-            object: &objects[object],
-        }));
     }
-    let by_method = methods.iter().map(|tested| {
-        let report = match &tested.locators {
-            Ok(locators) => score_places(evaluation.rig, &pairs, |pair| {
-                locators[pair.camera].locate(pair.detection, None)
-            }),
-            Err(reason) => MethodReport::unavailable(reason.clone()),
-        };
-        (tested.method, report)
-    });
+    let detection = matched.detection();
+    let table = SampleTable {
+        targets: matched.targets,
+        samples,
+    };
+    let figures = |estimator| Figures::of(table.of(estimator));
+    let published = figures(Estimator::Published);
+    let of_method =
+        |tested: &MethodUnderTest| (tested.method, figures(Estimator::By(tested.method)));
+    let estimators = table.estimators().into_iter();
     Report {
-        frames: counts.perceived,
-        frames_missing: counts.images - counts.perceived,
+        frames: matched.perceived,
+        frames_missing: matched.images - matched.perceived,
         filter: evaluation.filter.clone(),
-        detection: counts.score(),
-        published: score_places(evaluation.rig, &pairs, |pair| pair.published.cloned()),
-        methods: by_method.collect::<BTreeMap<_, _>>(),
+        detection,
+        published,
+        methods: methods.iter().map(of_method).collect(),
+        unavailable,
+        intervals: estimators
+            .map(|who| (who, Intervals::of(table.of(who))))
+            .collect(),
+        latency: None,
+        table,
     }
 }
 
 impl Evaluation<'_> {
     /// Every image of the dataset up to the limit: camera, stamp, frame number.
-    fn images(&self) -> impl Iterator<Item = (CameraId, Timestamp, u64)> {
+    pub fn images(&self) -> impl Iterator<Item = (CameraId, Timestamp, u64)> {
         let limit = self.frame_limit.map_or(usize::MAX, |limit| {
             usize::try_from(limit).unwrap_or(usize::MAX)
         });
@@ -126,51 +126,88 @@ impl Evaluation<'_> {
             captured.take(limit)
         })
     }
-}
 
-fn score_places(
-    rig: &Rig,
-    pairs: &[Pair<'_>],
-    place: impl Fn(&Pair<'_>) -> Option<Location>,
-) -> MethodReport {
-    let samples: Vec<Sample> = pairs
-        .iter()
-        .filter_map(|pair| {
-            let location = place(pair)?;
-            let camera: &RigCamera = &rig.cameras()[pair.camera];
-            let (found, true_center) = (location.position, pair.object.center);
-            Some(Sample {
-                range_m: location.range_m,
-                true_range_m: camera.range_m(true_center),
-                location_error_m: (found.x() - true_center.x()).hypot(found.y() - true_center.y()),
-            })
-        })
-        .collect();
-    MethodReport {
-        distance: score_distance(&samples),
-        location: score_location(&samples),
-        unlocated: pairs.len() - samples.len(),
-        unavailable: None,
+    fn matched<'r>(&self, recorded: &'r [Recorded]) -> Matched<'r> {
+        let by_moment: HashMap<_, _> = recorded
+            .iter()
+            .map(|frame| ((frame.camera, frame.captured_at), frame))
+            .collect();
+        let mut matched = Matched::default();
+        for (camera, captured_at, number) in self.images() {
+            matched.images += 1;
+            match by_moment.get(&(camera, captured_at)) {
+                Some(frame) => self.match_frame(&mut matched, frame, number),
+                None if self.lost_images == LostImages::Ignore => {}
+                None => self.miss_all(&mut matched, camera, number),
+            }
+        }
+        matched
+    }
+
+    /// Of an image that was lost nothing is found.
+    fn miss_all(&self, matched: &mut Matched<'_>, camera: CameraId, number: u64) {
+        let camera = self.rig.camera(camera);
+        let objects = self.truth.objects(number, camera.name.as_str()).iter();
+        let missed = objects.filter(|object| self.filter.admits(object));
+        let targets = missed.map(|object| Arc::new(Target::new(object, camera, false)));
+        matched.targets.extend(targets);
+    }
+
+    fn match_frame<'r>(&self, matched: &mut Matched<'r>, frame: &'r Recorded, number: u64) {
+        let camera = self.rig.camera(frame.camera);
+        let labels = self.truth.labels(number, camera.name.as_str());
+        let detections: Vec<&Detection> = frame.detections().collect();
+        let matches = match_image(&detections, labels, self.filter);
+        matched.perceived += 1;
+        matched.false_alarms += matches.false_alarms.len();
+        let taken: HashMap<usize, usize> = matches.pairs.iter().map(|&(d, o)| (o, d)).collect();
+        let objects = labels.objects.iter().enumerate();
+        for (at, object) in objects.filter(|(_, object)| self.filter.admits(object)) {
+            let detection = taken.get(&at);
+            let target = Arc::new(Target::new(object, camera, detection.is_some()));
+            matched.targets.push(Arc::clone(&target));
+            matched.pairs.extend(detection.map(|&detection| {
+                Pair {
+                    camera: frame.camera.index(),
+                    detection: detections[detection],
+                    published: frame
+                        .location(detection)
+                        .map(|location| (location, frame.heading(detection))),
+                    target,
+                }
+            }));
+        }
     }
 }
 
-/// Counts of detection. Objects outside the filter count neither for nor against.
-#[derive(Default)]
-struct Counts {
-    images: usize,
-    perceived: usize,
-    objects: usize,
-    found: usize,
-    false_alarms: usize,
-}
+impl Matched<'_> {
+    fn published(&self) -> Vec<Sample> {
+        let pairs = self.pairs.iter();
+        pairs
+            .map(|pair| Sample::judge(Estimator::Published, &pair.target, pair.published))
+            .collect()
+    }
 
-impl Counts {
-    fn score(&self) -> DetectionScore {
+    fn located_by(
+        &self,
+        method: Method,
+        locators: &[Box<dyn Locator>],
+    ) -> impl Iterator<Item = Sample> {
+        self.pairs.iter().map(move |pair| {
+            let found = locators[pair.camera].locate(pair.detection, None);
+            let answer = found.as_ref().map(|location| (location, None));
+            Sample::judge(Estimator::By(method), &pair.target, answer)
+        })
+    }
+
+    /// Objects outside the filter count neither for nor against.
+    fn detection(&self) -> DetectionScore {
+        let (objects, found) = (self.targets.len(), self.pairs.len());
         DetectionScore {
-            n: self.objects,
-            matched: self.found,
-            recall: share(self.found, self.objects),
-            precision: share(self.found, self.found + self.false_alarms),
+            n: objects,
+            matched: found,
+            recall: share(found, objects),
+            precision: share(found, found + self.false_alarms),
         }
     }
 }

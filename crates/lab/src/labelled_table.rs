@@ -176,18 +176,11 @@ fn reason<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion};
     use roadwatch_core::{
-        BoxPx, CameraModel, Distortion, ImageSize, Intrinsics,
-        space::{Point, Transform},
+        BoxPx, CameraModel, Distortion, ImageSize, Intrinsics, Mount, space::Point,
     };
 
     fn camera() -> RigCamera {
-        let level = Rotation3::from_matrix_unchecked(Matrix3::new(
-            0.0, 0.0, 1.0, //
-            -1.0, 0.0, 0.0, //
-            0.0, -1.0, 0.0,
-        ));
         RigCamera {
             name: CameraName::new("front").expect("a name"),
             model: CameraModel {
@@ -203,10 +196,7 @@ mod tests {
                 },
                 distortion: Distortion::None,
             },
-            base_from_optical: Transform::new(Isometry3::from_parts(
-                Translation3::new(1.0, 0.0, 1.8),
-                UnitQuaternion::from_rotation_matrix(&level),
-            )),
+            base_from_optical: Mount::ahead([1.0, 0.0, 1.8]).base_from_optical(),
             measured_focal: None,
         }
     }
@@ -215,6 +205,9 @@ mod tests {
         TruthObject {
             id: "a".to_owned(),
             class: "car".to_owned(),
+            label: None,
+            size: None,
+            yaw_rad: None,
             box_px: BoxPx::new(400.0, 250.0, 500.0, 310.0),
             silhouette_px: BoxPx::new(402.0, 256.0, 498.0, 308.0),
             truncated: 0.0,

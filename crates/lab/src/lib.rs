@@ -1,18 +1,36 @@
 //! Offline work on labelled data: what the pipeline said, matched to the truth and scored.
 //!
-//! There is one matcher ([`matching`]) and one scorer ([`score`]); every report is made of them.
+//! There is one matcher ([`matching`]), one scorer ([`score`]) and one table of samples ([`sample_table`]); every
+//! report, group and plot is made of them.
 
+pub mod bootstrap;
+pub mod dataset_format;
 pub mod evaluate;
+pub mod footprint;
+pub mod grouping;
+pub mod heading_score;
+pub mod honesty;
+pub mod kitti;
 pub mod labelled_table;
+#[cfg(test)]
+mod made;
 pub mod matching;
+pub mod plots;
 pub mod recorder;
 pub mod report;
+pub mod sample;
+pub mod sample_table;
 pub mod score;
 pub mod truth;
 
+pub use bootstrap::Intervals;
+pub use dataset_format::{DatasetFormat, OpenDatasetError};
 pub use evaluate::{Evaluation, LostImages, MethodUnderTest, evaluate};
 pub use labelled_table::{LabelCounts, LabelledTableError, LabelledTableSpec, table_from_labels};
 pub use matching::TruthFilter;
 pub use recorder::{Recorded, Recorder};
-pub use report::{Report, ReportError};
+pub use report::{LatencyMs, Report, ReportError};
+pub use sample::{Estimator, Sample, Target};
+pub use sample_table::SampleTable;
+pub use score::Figures;
 pub use truth::{Truth, TruthError, TruthObject};

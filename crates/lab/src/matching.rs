@@ -1,10 +1,13 @@
 //! The matcher: which detection is which labelled object.
 
-use crate::truth::TruthObject;
+use crate::truth::{ImageLabels, TruthObject};
 use roadwatch_core::{BoxPx, Detection};
 
 /// Least overlap of a detection and the labelled object it is taken for (docs/method.md, section 9).
 pub const MIN_IOU: f32 = 0.5;
+
+/// A detection of which this share or more lies in an unlabelled region is not judged, as in KITTI's evaluation.
+pub const UNLABELLED_SHARE: f32 = 0.5;
 
 /// Which labelled objects are scored.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,7 +63,7 @@ impl TruthFilter {
 pub struct Matches {
     /// (detection, scored object), each at most once.
     pub pairs: Vec<(usize, usize)>,
-    /// Detections that match no object, scored or not.
+    /// Detections that match no object, scored or not, and are not in a region that nobody labelled.
     pub false_alarms: Vec<usize>,
 }
 
@@ -71,9 +74,10 @@ pub struct Matches {
 #[must_use]
 pub fn match_image(
     detections: &[&Detection],
-    objects: &[TruthObject],
+    labels: &ImageLabels,
     filter: &TruthFilter,
 ) -> Matches {
+    let objects = &labels.objects;
     let mut order: Vec<usize> = (0..detections.len())
         .filter(|&at| filter.may_stand_for_scored(detections[at].class.as_str()))
         .collect();
@@ -93,11 +97,24 @@ pub fn match_image(
         let box_px = detections[detection].box_px;
         if let Some(object) = take_best(&mut scored, box_px) {
             matches.pairs.push((detection, object));
-        } else if take_best(&mut others, box_px).is_none() {
+        } else if take_best(&mut others, box_px).is_none()
+            && !is_unlabelled(box_px, &labels.unlabelled_px)
+        {
             matches.false_alarms.push(detection);
         }
     }
     matches
+}
+
+/// Whether one of the regions covers the box by [`UNLABELLED_SHARE`] or more.
+fn is_unlabelled(box_px: BoxPx, regions: &[BoxPx]) -> bool {
+    let covered = |region: &BoxPx| {
+        let width = box_px.x_max.min(region.x_max) - box_px.x_min.max(region.x_min);
+        let height = box_px.y_max.min(region.y_max) - box_px.y_min.max(region.y_min);
+        width.max(0.0) * height.max(0.0)
+    };
+    let regions = regions.iter().map(covered);
+    regions.fold(0.0, f32::max) >= UNLABELLED_SHARE * box_px.area_px2()
 }
 
 /// Removes the object that overlaps the box most; `None` when none does by [`MIN_IOU`].
@@ -127,22 +144,22 @@ mod tests {
         TruthObject {
             id: format!("{class}{x}"),
             class: class.to_owned(),
+            label: None,
             box_px: BoxPx::new(x, 0.0, x + 40.0, 30.0),
             silhouette_px: None,
             truncated: 0.0,
             occluded: 0.0,
             center: Point::new(10.0, 0.0, 0.7),
+            size: None,
+            yaw_rad: None,
         }
     }
 
     #[test]
     fn the_better_detection_takes_the_object_and_the_other_goes_without() {
         let (weak, strong) = (detection(0.0, 0.4, "car"), detection(5.0, 0.9, "car"));
-        let found = match_image(
-            &[&weak, &strong],
-            &[object(0.0, "car")],
-            &TruthFilter::default(),
-        );
+        let labels = vec![object(0.0, "car")].into();
+        let found = match_image(&[&weak, &strong], &labels, &TruthFilter::default());
         assert_eq!(found.pairs, [(1, 0)]);
         assert_eq!(found.false_alarms, [0]);
     }
@@ -153,8 +170,8 @@ mod tests {
             detection(0.0, 0.9, "person"),
             detection(100.0, 0.9, "truck"),
         );
-        let objects = [object(0.0, "person"), object(100.0, "car")];
-        let found = match_image(&[&person, &car], &objects, &TruthFilter::default());
+        let labels = vec![object(0.0, "person"), object(100.0, "car")].into();
+        let found = match_image(&[&person, &car], &labels, &TruthFilter::default());
         assert_eq!(found.pairs, [(1, 1)]);
         assert!(found.false_alarms.is_empty());
     }
@@ -165,11 +182,25 @@ mod tests {
             occluded: 1.0,
             ..object(0.0, "car")
         };
-        let objects = [hidden, object(4.0, "car")];
+        let labels = vec![hidden, object(4.0, "car")].into();
         let (seen, more) = (detection(1.0, 0.9, "car"), detection(0.0, 0.5, "car"));
-        let found = match_image(&[&seen, &more], &objects, &TruthFilter::default());
+        let found = match_image(&[&seen, &more], &labels, &TruthFilter::default());
         assert_eq!(found.pairs, [(0, 1)]);
         assert!(found.false_alarms.is_empty());
+    }
+
+    #[test]
+    fn what_is_detected_where_nobody_labelled_is_not_judged() {
+        let labels = ImageLabels {
+            objects: vec![object(0.0, "car")],
+            unlabelled_px: BoxPx::new(0.0, 0.0, 225.0, 300.0).into_iter().collect(),
+        };
+        let (car, inside) = (detection(0.0, 0.9, "car"), detection(200.0, 0.8, "car"));
+        let outside = detection(210.0, 0.7, "car");
+        let detections = [&car, &inside, &outside];
+        let found = match_image(&detections, &labels, &TruthFilter::default());
+        assert_eq!(found.pairs, [(0, 0)]);
+        assert_eq!(found.false_alarms, [2]);
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! A sink that keeps what was perceived, for scoring afterwards.
 
-use roadwatch_core::{CameraId, Detection, Location, Output, Sink, SinkError, Timestamp, Track};
+use roadwatch_core::{
+    CameraId, Detection, Heading, Location, Output, Sink, SinkError, Timestamp, Track,
+};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// What was made of one frame, without its image.
@@ -31,6 +33,12 @@ impl Recorded {
     pub fn location(&self, index: usize) -> Option<&Location> {
         let track = self.tracks.get(index)?;
         Some(&track.observed.located.location)
+    }
+
+    /// Its heading; `None` where none is known.
+    #[must_use]
+    pub fn heading(&self, index: usize) -> Option<Heading> {
+        self.tracks.get(index)?.observed.heading
     }
 }
 

@@ -1,20 +1,24 @@
-//! The report: `report.json` for programs, `report.md` for people.
+//! The report: `report.json` for programs, `report.md` for people, plots beside them.
+
+mod json;
+mod markdown;
 
 use crate::{
+    bootstrap::Intervals,
+    heading_score::HeadingScore,
     matching::TruthFilter,
-    score::{DistanceScore, LocationScore},
+    plots::{self, PlotError},
+    sample::Estimator,
+    sample_table::SampleTable,
+    score::Figures,
 };
+use markdown::{metres, percent};
 use roadwatch_core::Method;
-use serde_json::{Map, Value, json};
 use std::{
     collections::BTreeMap,
-    fmt::Write as _,
     fs, io,
     path::{Path, PathBuf},
 };
-
-/// Name of the pipeline's own answers among the methods.
-const PUBLISHED: &str = "published";
 
 /// Figures of detection.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,30 +33,13 @@ pub struct DetectionScore {
     pub precision: Option<f64>,
 }
 
-/// Figures of one method.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MethodReport {
-    /// Of `range_m`.
-    pub distance: DistanceScore,
-    /// Of the place.
-    pub location: LocationScore,
-    /// Matched objects that the method gave no place.
-    pub unlocated: usize,
-    /// Why the method was not tried; `None` when it was.
-    pub unavailable: Option<String>,
-}
-
-impl MethodReport {
-    /// The report of a method that this rig cannot use.
-    #[must_use]
-    pub fn unavailable(reason: String) -> Self {
-        Self {
-            distance: DistanceScore::default(),
-            location: LocationScore::default(),
-            unlocated: 0,
-            unavailable: Some(reason),
-        }
-    }
+/// How long frames took from received to published, milliseconds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LatencyMs {
+    /// Half of the frames took less.
+    pub p50: f64,
+    /// All but one in a hundred took less.
+    pub p99: f64,
 }
 
 /// Everything an evaluation found.
@@ -67,117 +54,53 @@ pub struct Report {
     /// How well they were found.
     pub detection: DetectionScore,
     /// How well the pipeline placed them: what it published, by the methods it was configured with.
-    pub published: MethodReport,
+    pub published: Figures,
     /// How well they were placed, by method.
-    pub methods: BTreeMap<Method, MethodReport>,
+    pub methods: BTreeMap<Method, Figures>,
+    /// Why methods were not tried, where they were not.
+    pub unavailable: BTreeMap<Method, String>,
+    /// How far the main figures would move with other objects.
+    pub intervals: BTreeMap<Estimator, Intervals>,
+    /// `None` when nobody measured.
+    pub latency: Option<LatencyMs>,
+    /// What everything else was made of.
+    pub table: SampleTable,
 }
 
 /// A report that could not be written.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot write the report `{}`", file.display())]
-pub struct ReportError {
-    file: PathBuf,
-    #[source]
-    cause: io::Error,
+pub enum ReportError {
+    /// The folder or a file.
+    #[error("cannot write the report `{}`", file.display())]
+    Unwritable {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        #[source]
+        cause: io::Error,
+    },
+    /// A plot.
+    #[error(transparent)]
+    Plot(#[from] PlotError),
 }
 
 impl Report {
-    /// What was published, then every method, by name.
-    fn places(&self) -> impl Iterator<Item = (&'static str, &MethodReport)> {
-        let methods = self
-            .methods
-            .iter()
-            .map(|(method, report)| (method.as_str(), report));
-        std::iter::once((PUBLISHED, &self.published)).chain(methods)
+    /// What was published, then every method.
+    fn places(&self) -> impl Iterator<Item = (Estimator, &Figures)> {
+        let methods = self.methods.iter();
+        let methods = methods.map(|(method, figures)| (Estimator::By(*method), figures));
+        std::iter::once((Estimator::Published, &self.published)).chain(methods)
     }
 
-    /// The report as JSON: `detection.…`, `distance.<method>.…`, `location.<method>.…`, where `published`
-    /// stands for what the pipeline published.
-    #[must_use]
-    pub fn to_json(&self) -> Value {
-        let by_method = |value: &dyn Fn(&MethodReport) -> Value| -> Value {
-            let entries = self.places();
-            let entries = entries.map(|(name, report)| (name.to_owned(), value(report)));
-            Value::Object(entries.collect::<Map<_, _>>())
-        };
-        let unavailable = |report: &MethodReport| json!(report.unavailable);
-        json!({
-            "frames": self.frames,
-            "frames_missing": self.frames_missing,
-            "filter": {
-                "min_height_px": self.filter.min_height_px,
-                "max_occluded": self.filter.max_occluded,
-                "max_truncated": self.filter.max_truncated,
-                "classes": self.filter.classes,
-            },
-            "detection": {
-                "n": self.detection.n,
-                "matched": self.detection.matched,
-                "recall": self.detection.recall,
-                "precision": self.detection.precision,
-            },
-            "distance": by_method(&|report| json!(report.distance)),
-            "location": by_method(&|report| json!(report.location)),
-            "unlocated": by_method(&|report| json!(report.unlocated)),
-            "unavailable": by_method(&unavailable),
-        })
-    }
-
-    /// The report as Markdown.
-    #[must_use]
-    pub fn to_markdown(&self) -> String {
-        let filter = &self.filter;
-        let detection = &self.detection;
-        let mut text = format!(
-            "# Evaluation\n\n{} images, {} more were lost. Objects scored: {}, at least {} px high, at most {} hidden and {} outside the image.\n\n\
-             ## Detection\n\n| objects | found | recall | precision |\n|---|---|---|---|\n| {} | {} | {} | {} |\n\n\
-             ## Distance (`range_m`)\n\n\
-             | method | n | MAE m | mean rel. | median rel. | bias | > 1.5 m |\n|---|---|---|---|---|---|---|\n",
-            self.frames,
-            self.frames_missing,
-            filter.classes.join(", "),
-            filter.min_height_px,
-            percent(Some(filter.max_occluded)),
-            percent(Some(filter.max_truncated)),
-            detection.n,
-            detection.matched,
-            percent(detection.recall),
-            percent(detection.precision),
-        );
-        // Writing to a String cannot fail.
-        for (method, report) in self.places() {
-            let d = &report.distance;
-            writeln!(
-                text,
-                "| {method} | {} | {} | {} | {} | {} | {} |",
-                d.n,
-                metres(d.mae_m),
-                percent(d.mean_relative_error),
-                percent(d.median_relative_error),
-                percent(d.bias_relative),
-                percent(d.major_error_share),
-            )
-            .ok();
-        }
-        text.push_str("\n## Location (horizontal)\n\n| method | n | without a place | mean m | p50 m | p90 m | <= 1.5 m |\n|---|---|---|---|---|---|---|\n");
-        for (method, report) in self.places() {
-            let l = &report.location;
-            let (mean, p50, p90) = (metres(l.mae_m), metres(l.p50_m), metres(l.p90_m));
-            writeln!(
-                text,
-                "| {method} | {} | {} | {mean} | {p50} | {p90} | {} |",
-                l.n,
-                report.unlocated,
-                percent(l.minor_error_share),
-            )
-            .ok();
-        }
-        for (method, report) in &self.methods {
-            if let Some(reason) = &report.unavailable {
-                writeln!(text, "\n`{method}` was not tried: {reason}.").ok();
-            }
-        }
-        text
+    /// Whose headings stand for the evaluation: those that were published, or those that the fused method's boxes
+    /// allow where none was; `None` when nobody says anything of headings.
+    fn heading(&self) -> Option<(Estimator, &HeadingScore)> {
+        let candidates = [Estimator::Published, Estimator::By(Method::Fused)];
+        let mut said = candidates.into_iter().filter_map(|estimator| {
+            let (_, figures) = self.places().find(|(who, _)| *who == estimator)?;
+            (figures.heading.n > 0).then_some((estimator, &figures.heading))
+        });
+        said.next()
     }
 
     /// What a run's summary says of its accuracy, for people.
@@ -208,27 +131,27 @@ impl Report {
         )
     }
 
-    /// Writes `report.json` and `report.md` into a folder, which is made if need be.
+    /// Writes `report.json`, `report.md` and the plots into a folder, which is made if need be. Gives the names of
+    /// the files.
     ///
     /// # Errors
     /// When the folder or a file cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<(), ReportError> {
-        let failed = |file: &Path| {
-            let file = file.to_owned();
-            move |cause| ReportError { file, cause }
+    pub fn write(&self, folder: &Path) -> Result<Vec<&'static str>, ReportError> {
+        const JSON: &str = "report.json";
+        const MARKDOWN: &str = "report.md";
+        let write = |name: &str, text: String| {
+            let file = folder.join(name);
+            fs::write(&file, text).map_err(|cause| ReportError::Unwritable { file, cause })
         };
-        fs::create_dir_all(folder).map_err(failed(folder))?;
-        let json = folder.join("report.json");
-        fs::write(&json, format!("{:#}\n", self.to_json())).map_err(failed(&json))?;
-        let markdown = folder.join("report.md");
-        fs::write(&markdown, self.to_markdown()).map_err(failed(&markdown))
+        fs::create_dir_all(folder).map_err(|cause| ReportError::Unwritable {
+            file: folder.to_owned(),
+            cause,
+        })?;
+        write(JSON, format!("{:#}\n", self.to_json()))?;
+        let drawn = plots::draw(&self.table, folder)?;
+        let text = format!("{}{}", self.to_markdown(), markdown::links(&drawn));
+        write(MARKDOWN, text)?;
+        let plots = drawn.into_iter().map(|plot| plot.file);
+        Ok([JSON, MARKDOWN].into_iter().chain(plots).collect())
     }
-}
-
-fn metres(value: Option<f64>) -> String {
-    value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"))
-}
-
-fn percent(value: Option<f64>) -> String {
-    value.map_or_else(|| "-".to_owned(), |value| format!("{:.1} %", value * 100.0))
 }

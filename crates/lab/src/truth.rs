@@ -1,7 +1,7 @@
 //! `truth.jsonl` of a rig dataset: what was really there.
 
 use roadwatch_core::{
-    BoxPx,
+    BoxPx, Rig, SizeLwh,
     space::{BaseLink, Point},
 };
 use serde::Deserialize;
@@ -20,6 +20,8 @@ pub struct TruthObject {
     pub id: String,
     /// COCO-style class.
     pub class: String,
+    /// The dataset's own name for its kind, such as `Pickup Truck`; `None` where it has none.
+    pub label: Option<String>,
     /// Hull of the projected cuboid, clipped to the image, pixels; `None` when nothing of it is in the image.
     pub box_px: Option<BoxPx>,
     /// The box that a perfect detector gives: of the object's outline as if nothing stood in front of it,
@@ -31,12 +33,40 @@ pub struct TruthObject {
     pub occluded: f64,
     /// Centre of the cuboid.
     pub center: Point<BaseLink>,
+    /// The cuboid's size; `None` where the labels do not say.
+    pub size: Option<SizeLwh>,
+    /// Heading about base_link's z, radians; `None` where the labels do not say.
+    pub yaw_rad: Option<f64>,
 }
+
+/// What is labelled in one image.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ImageLabels {
+    /// The objects.
+    pub objects: Vec<TruthObject>,
+    /// Regions nobody labelled: what is detected there is neither right nor wrong, pixels.
+    pub unlabelled_px: Vec<BoxPx>,
+}
+
+impl From<Vec<TruthObject>> for ImageLabels {
+    fn from(objects: Vec<TruthObject>) -> Self {
+        Self {
+            objects,
+            unlabelled_px: Vec::new(),
+        }
+    }
+}
+
+/// Of an image without any label.
+static NOTHING_LABELLED: ImageLabels = ImageLabels {
+    objects: Vec::new(),
+    unlabelled_px: Vec::new(),
+};
 
 /// All labels of a dataset, by frame number and camera name.
 #[derive(Debug, Clone, Default)]
 pub struct Truth {
-    frames: BTreeMap<(u64, String), Vec<TruthObject>>,
+    frames: BTreeMap<(u64, String), ImageLabels>,
 }
 
 impl TruthObject {
@@ -70,6 +100,19 @@ pub enum TruthError {
         #[source]
         cause: serde_json::Error,
     },
+    /// Labels of a camera that the rig does not have.
+    #[error(
+        "frame {frame} has labels of camera `{camera}`, but the rig has only {known}: add the camera to the \
+         rig, or remove its labels"
+    )]
+    UnknownCamera {
+        /// The first frame with such labels.
+        frame: u64,
+        /// The camera.
+        camera: String,
+        /// The rig's cameras.
+        known: String,
+    },
 }
 
 #[derive(Deserialize)]
@@ -83,12 +126,18 @@ struct Line {
 struct Object {
     id: String,
     class: String,
+    #[serde(default)]
+    label: Option<String>,
     box_px: [f32; 4],
     #[serde(default)]
     silhouette_px: Option<[f32; 4]>,
     truncated: f64,
     occluded: f64,
     center_base_m: [f64; 3],
+    #[serde(default)]
+    size_lwh_m: Option<[f64; 3]>,
+    #[serde(default)]
+    yaw_base_rad: Option<f64>,
 }
 
 impl Truth {
@@ -112,8 +161,8 @@ impl Truth {
                 line: at + 1,
                 cause,
             })?;
-            let objects = line.objects.into_iter().map(TruthObject::from).collect();
-            frames.insert((line.frame, line.camera), objects);
+            let objects: Vec<_> = line.objects.into_iter().map(TruthObject::from).collect();
+            frames.insert((line.frame, line.camera), objects.into());
         }
         Ok(Self { frames })
     }
@@ -123,34 +172,61 @@ impl Truth {
     pub fn classes(&self) -> BTreeSet<&str> {
         self.frames
             .values()
-            .flatten()
+            .flat_map(|labels| &labels.objects)
             .map(|object| object.class.as_str())
             .collect()
+    }
+
+    /// What is labelled in one image; empty where nothing is.
+    #[must_use]
+    pub fn labels(&self, frame: u64, camera: &str) -> &ImageLabels {
+        let found = self.frames.get(&(frame, camera.to_owned()));
+        found.unwrap_or(&NOTHING_LABELLED)
     }
 
     /// The objects in one image; none where nothing is labelled.
     #[must_use]
     pub fn objects(&self, frame: u64, camera: &str) -> &[TruthObject] {
-        let found = self.frames.get(&(frame, camera.to_owned()));
-        found.map_or(&[], Vec::as_slice)
+        &self.labels(frame, camera).objects
+    }
+
+    /// Checks that whoever has labels is a camera of the rig.
+    ///
+    /// # Errors
+    /// The first labels of a camera that the rig does not have: a slip that would score nothing.
+    pub fn check_cameras(&self, rig: &Rig) -> Result<(), TruthError> {
+        let mut images = self.frames.keys();
+        let unknown = images.find(|(_, camera)| rig.find(camera).is_none());
+        let Some((frame, camera)) = unknown else {
+            return Ok(());
+        };
+        let known: Vec<_> = rig.cameras().iter().map(|c| c.name.as_str()).collect();
+        Err(TruthError::UnknownCamera {
+            frame: *frame,
+            camera: camera.clone(),
+            known: known.join(", "),
+        })
     }
 
     /// Every object that is labelled in a camera's images, in order of frames.
     pub fn of_camera(&self, camera: &str) -> impl Iterator<Item = &TruthObject> {
         let frames = self.frames.iter();
         let frames = frames.filter(move |((_, name), _)| name == camera);
-        frames.flat_map(|(_, objects)| objects)
+        frames.flat_map(|(_, labels)| &labels.objects)
     }
 }
 
-impl FromIterator<((u64, String), Vec<TruthObject>)> for Truth {
+impl<L: Into<ImageLabels>> FromIterator<((u64, String), L)> for Truth {
     /// Labels by frame number and camera name.
     fn from_iter<I>(frames: I) -> Self
     where
-        I: IntoIterator<Item = ((u64, String), Vec<TruthObject>)>,
+        I: IntoIterator<Item = ((u64, String), L)>,
     {
+        let frames = frames.into_iter();
         Self {
-            frames: frames.into_iter().collect(),
+            frames: frames
+                .map(|(image, labels)| (image, labels.into()))
+                .collect(),
         }
     }
 }
@@ -160,14 +236,22 @@ impl From<Object> for TruthObject {
         let [x, y, z] = object.center_base_m;
         let to_box =
             |[x_min, y_min, x_max, y_max]: [f32; 4]| BoxPx::new(x_min, y_min, x_max, y_max);
+        let to_size = |[length_m, width_m, height_m]: [f64; 3]| SizeLwh {
+            length_m,
+            width_m,
+            height_m,
+        };
         Self {
             id: object.id,
             class: object.class,
+            label: object.label,
             box_px: to_box(object.box_px),
             silhouette_px: object.silhouette_px.and_then(to_box),
             truncated: object.truncated,
             occluded: object.occluded,
             center: Point::new(x, y, z),
+            size: object.size_lwh_m.map(to_size),
+            yaw_rad: object.yaw_base_rad,
         }
     }
 }

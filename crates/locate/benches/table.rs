@@ -3,10 +3,9 @@
 //! Percentiles of single queries come first (divan reports means of many); the clock's own reading time,
 //! about 20 ns, is part of them.
 
-use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion};
 use roadwatch_core::{
-    BoxPx, CameraModel, CameraName, Distortion, ImageSize, Intrinsics, ObjectClass, RigCamera,
-    SizeLwh, camera_model::Pixel, space::Transform,
+    BoxPx, CameraModel, CameraName, Distortion, ImageSize, Intrinsics, Mount, ObjectClass,
+    RigCamera, SizeLwh, camera_model::Pixel,
 };
 use roadwatch_locate::{
     BoxNoise, ClassSizes, GridSpec, HullSpec, LocationTable, SizeGroup, TableIndex, TableLocator,
@@ -177,11 +176,6 @@ fn table() -> Arc<LocationTable> {
 /// A 92-degree camera 1.9 m above the ground, as on PandaSet's sides.
 #[expect(clippy::expect_used, reason = "a literal")]
 fn camera() -> RigCamera {
-    let forward = Rotation3::from_matrix_unchecked(Matrix3::new(
-        0.0, 0.0, 1.0, //
-        -1.0, 0.0, 0.0, //
-        0.0, -1.0, 0.0,
-    ));
     RigCamera {
         name: CameraName::new("front").expect("a name"),
         model: CameraModel {
@@ -197,10 +191,7 @@ fn camera() -> RigCamera {
             },
             distortion: Distortion::None,
         },
-        base_from_optical: Transform::new(Isometry3::from_parts(
-            Translation3::new(1.5, 0.0, 1.9),
-            UnitQuaternion::from_rotation_matrix(&forward),
-        )),
+        base_from_optical: Mount::ahead([1.5, 0.0, 1.9]).base_from_optical(),
         measured_focal: None,
     }
 }

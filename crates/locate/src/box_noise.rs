@@ -14,12 +14,13 @@ pub struct BoxNoise {
 }
 
 impl Default for BoxNoise {
-    /// One pixel, and 4 % of the height: boxes that overlap truth by an IoU of 0.85, which is what a
-    /// small YOLO reaches on clean cars, have edges off by about that.
+    /// One pixel, and 3 % of the height: on simulated cars with nothing in front of them the upper and lower
+    /// edges of two small YOLOs stray by 1.5 to 2.5 px at 30 px of height and by 3.5 px at 120 px (median
+    /// absolute deviation times 1.48).
     fn default() -> Self {
         Self {
             edge_px: 1.0,
-            edge_share_of_height: 0.04,
+            edge_share_of_height: 0.03,
         }
     }
 }

@@ -3,6 +3,7 @@
 use crate::{
     box_noise::BoxNoise,
     estimate::Estimate,
+    fused::{FusedEstimate, FusedLocator},
     ground::{GroundPlane, MountNoise},
     hold::HoldOptions,
     hull::HullSpec,
@@ -12,7 +13,8 @@ use crate::{
     triangle::locate_by_triangle,
 };
 use roadwatch_core::{
-    BoxPx, CameraName, Detection, Location, Locator, Method, Prior, RigCamera, SizeLwh,
+    BoxPx, CameraName, Detection, Heading, HeadingCandidates, Location, Locator, Method, Prior,
+    RigCamera, SizeLwh,
 };
 use std::sync::Arc;
 
@@ -86,6 +88,7 @@ enum Strategy {
     Fy,
     Table(Box<TableLocator>),
     Ground,
+    Fused(Box<FusedLocator>),
 }
 
 /// Locates the objects of one camera.
@@ -116,14 +119,15 @@ impl CameraLocator {
         if !(options.max_range_m.is_finite() && options.max_range_m > 0.0) {
             return Err(LocatorError::MaxRange(options.max_range_m));
         }
-        let strategy = strategy(camera, ground_z_m, &options)?;
+        let plane = GroundPlane {
+            z_m: ground_z_m,
+            max_range_m: options.max_range_m,
+            mount_noise: options.mount_noise,
+        };
+        let strategy = strategy(camera, &plane, &options)?;
         Ok(Self {
             camera: camera.clone(),
-            plane: GroundPlane {
-                z_m: ground_z_m,
-                max_range_m: options.max_range_m,
-                mount_noise: options.mount_noise,
-            },
+            plane,
             sizes: options.sizes,
             box_noise: options.box_noise,
             hold: options.hold,
@@ -134,7 +138,7 @@ impl CameraLocator {
     /// The location that this box alone gives; `None` for a class of unknown size, a box that is not a
     /// box, and wherever the method has no answer within the greatest range.
     #[must_use]
-    pub fn measure(&self, detection: &Detection) -> Option<Location> {
+    pub fn measure(&self, detection: &Detection, prior: Option<&Heading>) -> Option<Location> {
         let BoxPx {
             x_min,
             y_min,
@@ -144,6 +148,11 @@ impl CameraLocator {
         let box_px = BoxPx::new(x_min, y_min, x_max, y_max)?;
         let class = self.sizes.get(&detection.class)?;
         let on_ground = class.standing == Standing::OnGround;
+        if let (Strategy::Fused(fused), true) = (&self.strategy, on_ground) {
+            let boxed = (&box_px, &self.box_noise);
+            let found = fused.locate(&self.camera, &detection.class, boxed, prior)?;
+            return self.fused(found);
+        }
         let fy = self.camera.model.intrinsics.fy;
         let (method, size, estimate) = match &self.strategy {
             Strategy::MeasuredFocal { focal_px } => (
@@ -162,13 +171,21 @@ impl CameraLocator {
                 let estimate = self.plane.locate(&self.camera, class, &hull, boxed);
                 (Method::Ground, class.size, estimate)
             }
-            Strategy::Fy | Strategy::Table(_) | Strategy::Ground => (
+            Strategy::Fy | Strategy::Table(_) | Strategy::Ground | Strategy::Fused(_) => (
                 Method::TriangleFy,
                 class.size,
                 self.triangle(fy, class, &box_px),
             ),
         };
         self.location(estimate?, size, method)
+    }
+
+    fn fused(&self, found: FusedEstimate) -> Option<Location> {
+        let location = self.location(found.estimate, found.size, Method::Fused)?;
+        Some(Location {
+            headings: found.headings,
+            ..location
+        })
     }
 
     fn triangle(&self, focal_px: f64, class: &ClassSize, box_px: &BoxPx) -> Option<Estimate> {
@@ -193,6 +210,7 @@ impl CameraLocator {
             range_m,
             size,
             method,
+            headings: HeadingCandidates::default(),
             held: false,
         })
     }
@@ -200,13 +218,15 @@ impl CameraLocator {
 
 impl Locator for CameraLocator {
     fn locate(&self, detection: &Detection, prior: Option<&Prior>) -> Option<Location> {
-        self.measure(detection).or_else(|| self.hold.keep(prior?))
+        let heading = prior.and_then(|prior| prior.heading.as_ref());
+        let measured = self.measure(detection, heading);
+        measured.or_else(|| self.hold.keep(prior?))
     }
 }
 
 fn strategy(
     camera: &RigCamera,
-    ground_z_m: f64,
+    plane: &GroundPlane,
     options: &LocatorOptions,
 ) -> Result<Strategy, LocatorError> {
     let name = || camera.name.clone();
@@ -221,6 +241,10 @@ fn strategy(
         }
         Method::TriangleFy => Ok(Strategy::Fy),
         Method::Ground => Ok(Strategy::Ground),
+        Method::Fused => {
+            let fused = FusedLocator::new(camera, plane, &options.sizes);
+            Ok(Strategy::Fused(Box::new(fused)))
+        }
         Method::Table => {
             let table = options
                 .table
@@ -228,7 +252,7 @@ fn strategy(
                 .ok_or_else(|| LocatorError::NoTable(name()))?;
             let sized = table.check_sizes(&options.sizes);
             sized.map_err(TableMismatch::from)?;
-            let table = TableLocator::new(camera, ground_z_m, table, options.table_options)?;
+            let table = TableLocator::new(camera, plane.z_m, table, options.table_options)?;
             Ok(Strategy::Table(Box::new(table)))
         }
     }

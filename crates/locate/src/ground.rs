@@ -23,11 +23,11 @@ pub struct MountNoise {
 }
 
 impl Default for MountNoise {
-    /// One degree: springs let a car pitch by a third of it in ordinary driving, and the road's grade under
-    /// the object differs from that under the wheels by a percent or two. 5 cm is a road's camber.
+    /// 0.8 degrees: springs let a car pitch by a third of a degree in ordinary driving, and the road's grade
+    /// under the object differs from that under the wheels by a percent or so. 5 cm is a road's camber.
     fn default() -> Self {
         Self {
-            pitch_rad: 1.0_f64.to_radians(),
+            pitch_rad: 0.8_f64.to_radians(),
             ground_m: 0.05,
         }
     }

@@ -7,6 +7,7 @@
 pub mod box_noise;
 pub mod camera_locator;
 pub mod estimate;
+pub mod fused;
 pub mod ground;
 pub mod hold;
 pub mod hull;
@@ -18,6 +19,7 @@ pub mod triangle;
 pub use box_noise::BoxNoise;
 pub use camera_locator::{CameraLocator, LocatorError, LocatorOptions};
 pub use estimate::Estimate;
+pub use fused::{FusedEstimate, FusedLocator};
 pub use ground::{GroundPlane, MountNoise};
 pub use hold::HoldOptions;
 pub use hull::{GroundPose, HullSpec, SilhouetteCamera};

@@ -2,6 +2,7 @@
 //!
 //! Nothing here decides where an object is: the pictures show what the pipeline published.
 
+mod calibration_view;
 mod camera_view;
 mod canvas;
 mod contact_sheet;
@@ -10,6 +11,7 @@ mod palette;
 mod picture_sink;
 mod scene_view;
 
+pub use calibration_view::{MountEvidence, SeenAndPut, corners_view, focal_view, mount_view};
 pub use camera_view::camera_view;
 pub use canvas::{Canvas, DrawError};
 pub use contact_sheet::contact_sheet;

@@ -9,6 +9,8 @@ pub(crate) const TEXT: Colour = [232, 228, 224];
 pub(crate) const FAINT_TEXT: Colour = [150, 140, 132];
 pub(crate) const VEHICLE: Colour = [250, 250, 250];
 pub(crate) const FIELD_OF_VIEW: Colour = [78, 66, 58];
+/// What was measured, over an image.
+pub(crate) const MARK: Colour = VERMILION;
 
 const SKY_BLUE: Colour = [233, 180, 86];
 const ORANGE: Colour = [0, 159, 230];

@@ -1,11 +1,12 @@
 //! Pictures of a small rig: boxes lie where the camera sees them, and the fullest round is drawn.
 
-use nalgebra::{Isometry3, Matrix3, Quaternion, Translation3, UnitQuaternion};
+use nalgebra::Matrix3;
 use roadwatch_core::{
-    BoxPx, CameraId, CameraModel, CameraName, Detection, Distortion, Frame, Image, ImageSize,
-    Intrinsics, Located, Location, Method, ObjectClass, Oriented, Output, PerFrame, Perceived,
-    Pixels, Rig, RigCamera, Scene, SceneObject, Score, Sink, SizeLwh, Timestamp, Track, TrackId,
-    space::{Covariance, Point, Transform},
+    BoxPx, CameraId, CameraModel, CameraName, Detection, Distortion, Frame, HeadingCandidates,
+    Image, ImageSize, Intrinsics, Located, Location, Method, Mount, ObjectClass, Oriented, Output,
+    PerFrame, Perceived, Pixels, Rig, RigCamera, Scene, SceneObject, Score, Sink, SizeLwh,
+    Timestamp, Track, TrackId,
+    space::{Covariance, Point},
 };
 use roadwatch_picture::{Canvas, PictureSink, SCENE_FILE, VIEWS_FILE, camera_view};
 use std::{fs, sync::Arc, time::Instant};
@@ -17,7 +18,6 @@ const SIZE: ImageSize = ImageSize {
 
 /// Looks ahead from 1.5 m above the ground.
 fn camera() -> RigCamera {
-    let optical = UnitQuaternion::from_quaternion(Quaternion::new(0.5, -0.5, 0.5, -0.5));
     RigCamera {
         name: CameraName::new("front").expect("a name"),
         model: CameraModel {
@@ -30,10 +30,7 @@ fn camera() -> RigCamera {
             },
             distortion: Distortion::None,
         },
-        base_from_optical: Transform::new(Isometry3::from_parts(
-            Translation3::new(0.0, 0.0, 1.5),
-            optical,
-        )),
+        base_from_optical: Mount::ahead([0.0, 0.0, 1.5]).base_from_optical(),
         measured_focal: None,
     }
 }
@@ -57,6 +54,7 @@ fn car(ahead_m: f64) -> Track {
                 height_m: 1.5,
             },
             method: Method::Table,
+            headings: HeadingCandidates::default(),
             held: false,
         },
     };

@@ -1,8 +1,15 @@
 //! The command line.
 
+mod calibrate;
+mod evaluate;
 mod models;
 mod table;
 
+pub use calibrate::{
+    BoxesFrom, CalibrateCameraArgs, CalibrateCommand, CalibrateFocalArgs, CalibrateMountArgs,
+    SolvedPart, TrustedPart,
+};
+pub use evaluate::{EvaluateArgs, FormatName};
 pub use models::{ModelsCommand, ModelsFetchArgs, ModelsListArgs, ModelsVerifyArgs};
 pub use table::{TableBuildArgs, TableCommand, TableInspectArgs, TableQueryArgs};
 
@@ -38,6 +45,9 @@ pub enum Command {
     Check(ConfigArgs),
     /// Print the cameras, stages, queues and topics a configuration gives.
     Graph(ConfigArgs),
+    /// Calibration: focal values, lenses, mounts.
+    #[command(subcommand)]
+    Calibrate(CalibrateCommand),
     /// Look-up tables: build, inspect, query.
     #[command(subcommand)]
     Table(TableCommand),
@@ -108,46 +118,6 @@ pub struct RunArgs {
     pub json: bool,
 }
 
-/// Arguments of `evaluate`. The defaults of the filter are clean cars: well visible and not small.
-#[derive(Debug, Args)]
-#[command(after_help = "Example:\n  \
-    roadwatch evaluate --config config/pandaset.toml -o evaluation")]
-pub struct EvaluateArgs {
-    /// The configuration file (TOML).
-    #[arg(long, value_name = "CONFIG")]
-    pub config: PathBuf,
-    /// Take images, rig and truth from this rig dataset, everything else from the configuration.
-    #[arg(long, value_name = "DIR")]
-    pub dataset: Option<PathBuf>,
-    /// Folder for report.json and report.md.
-    #[arg(short, long, value_name = "DIR", default_value = "evaluation")]
-    pub out: PathBuf,
-    /// Score only objects at least this high, pixels.
-    #[arg(long, value_name = "PX", default_value_t = 20.0)]
-    pub min_height_px: f64,
-    /// Score only objects hidden at most this much, 0 to 1.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.3, value_parser = share)]
-    pub max_occluded: f64,
-    /// Score only objects at most this much outside the image, 0 to 1.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.05, value_parser = share)]
-    pub max_truncated: f64,
-    /// Score only objects of these classes; repeat or separate by commas. What is detected as a car may be a
-    /// labelled truck and the other way round.
-    #[arg(
-        long,
-        value_name = "CLASS",
-        value_delimiter = ',',
-        default_value = "car"
-    )]
-    pub class: Vec<String>,
-    /// Use only the first frames of each camera.
-    #[arg(long, value_name = "N")]
-    pub frames: Option<u64>,
-    /// Print report.json instead of report.md on standard output.
-    #[arg(long)]
-    pub json: bool,
-}
-
 fn share(text: &str) -> Result<f64, String> {
     let share: Option<f64> = text.parse().ok();
     share
@@ -182,6 +152,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Run(args) => commands::run::run(&args),
         Command::Check(args) => commands::check::run(&args),
         Command::Graph(args) => commands::graph::run(&args),
+        Command::Calibrate(command) => commands::calibrate::run(&command),
         Command::Table(TableCommand::Build(args)) => commands::table::build(&args),
         Command::Table(TableCommand::Inspect(args)) => commands::table::inspect(&args),
         Command::Table(TableCommand::Query(args)) => commands::table::query(&args),

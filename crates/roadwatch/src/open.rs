@@ -92,6 +92,7 @@ pub fn sources(
         rig,
         cameras,
         dataset,
+        ..
     } = config.rig.as_ref()?;
     let start = default_start(cameras, dataset.as_deref());
     let opened: Vec<Option<AnyRecording>> = rig

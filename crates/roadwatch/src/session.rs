@@ -2,7 +2,7 @@
 
 use crate::{
     clock::{SystemClock, wall_time},
-    config::{Config, Environment, Mistakes},
+    config::{Config, DatasetChoice, Environment, Mistakes},
     failure::Failure,
     open,
 };
@@ -14,7 +14,6 @@ use roadwatch_pipeline::{
 };
 use roadwatch_reid::LeftToRight;
 use std::{
-    path::PathBuf,
     sync::Arc,
     time::{Duration, Instant},
 };
@@ -42,7 +41,7 @@ impl Session {
     /// Every mistake at once.
     pub fn open(
         config: &std::path::Path,
-        dataset: Option<PathBuf>,
+        dataset: Option<DatasetChoice>,
         playback: PlaybackOptions,
     ) -> Result<Self, Mistakes> {
         let config = Config::load(config, dataset, &Environment::of_process())?;

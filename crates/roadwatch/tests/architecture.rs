@@ -6,7 +6,7 @@ use cargo_metadata::{DependencyKind, MetadataCommand};
 use std::collections::BTreeMap;
 
 /// Each crate with the crates of this workspace it may depend on.
-const ARROWS: [(&str, &[&str]); 11] = [
+const ARROWS: [(&str, &[&str]); 12] = [
     ("roadwatch-core", &[]),
     ("roadwatch-pipeline", &["roadwatch-core"]),
     ("roadwatch-camera", &["roadwatch-core"]),
@@ -15,6 +15,10 @@ const ARROWS: [(&str, &[&str]); 11] = [
     ("roadwatch-reid", &["roadwatch-core"]),
     ("roadwatch-ros", &["roadwatch-core"]),
     ("roadwatch-picture", &["roadwatch-core"]),
+    (
+        "roadwatch-calibrate",
+        &["roadwatch-core", "roadwatch-locate"],
+    ),
     (
         "roadwatch-lab",
         &[
@@ -30,6 +34,7 @@ const ARROWS: [(&str, &[&str]); 11] = [
         "roadwatch",
         &[
             "roadwatch-core",
+            "roadwatch-calibrate",
             "roadwatch-pipeline",
             "roadwatch-camera",
             "roadwatch-detect",

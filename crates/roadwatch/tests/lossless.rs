@@ -100,36 +100,3 @@ fn two_runs_give_one_bag_with_every_frame_and_every_digit() {
         written_stamps(&shared, "right")
     );
 }
-
-#[test]
-fn evaluation_gives_the_figures_known_of_this_drive() {
-    let (Some(shared), Some(_)) = (shared(), runtime_library()) else {
-        return;
-    };
-    let folder = tempfile::tempdir().expect("a folder");
-    let config = write(
-        folder.path(),
-        "config.toml",
-        &pandaset_config(&shared, "publish = false"),
-    );
-    let out = folder.path().join("evaluation").display().to_string();
-    let output = run_well(&["evaluate", "--config", &config, "-o", &out, "--json"]);
-    let report: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    let written = fs::read(folder.path().join("evaluation/report.json")).expect("written");
-    assert_eq!(
-        serde_json::from_slice::<Value>(&written).expect("JSON"),
-        report
-    );
-    let number = |path: &str| report.pointer(path).and_then(Value::as_f64).expect(path);
-    // Measured independently on the same images and labels: n 366 of 544, 14.7 %, bias -13.2 %.
-    assert_eq!(number("/detection/n"), 544.0);
-    assert!((number("/distance/triangle_fy/n") - 366.0).abs() <= 4.0);
-    assert!((number("/distance/triangle_fy/mean_relative_error") - 0.147).abs() < 0.01);
-    assert!((number("/distance/triangle_fy/bias_relative") + 0.132).abs() < 0.01);
-    // The default method is to be at least a third better than the formula alone.
-    let table = number("/distance/table/mean_relative_error");
-    assert!(
-        table < 0.667 * number("/distance/triangle_fy/mean_relative_error"),
-        "{table}"
-    );
-}

@@ -52,7 +52,13 @@ def _add_detector(commands: argparse._SubParsersAction) -> None:
     add("--data", type=Path, required=True, action="append", help="folder with labels.jsonl; repeatable")
     add("--simulate", type=int, metavar="COUNT", help="pictures of a --data folder that is missing")
     add("--out", type=Path, required=True, help="folder for the checkpoint and detector.onnx")
-    add("--resume", action="store_true", help="go on from the checkpoint in --out, with its settings")
+    begin = train.add_mutually_exclusive_group()
+    begin.add_argument(
+        "--resume", action="store_true", help="go on from the checkpoint in --out, with its settings"
+    )
+    begin.add_argument(
+        "--start-from", type=Path, metavar="RUN", help="begin with the weights of another --out, not random ones"
+    )
     add("--width", choices=SHAPES, default=default.width, help="channels of the network (%(default)s)")
     window = (default.width_px, default.height_px)
     add("--window", type=_size, default=window, metavar="WxH", help="cut out for training (416x256)")

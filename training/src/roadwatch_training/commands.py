@@ -36,6 +36,8 @@ def run_detector(args: Namespace) -> None:
     training = Training(settings, ImageStore.load(images), args.out, _say)
     if args.resume:
         training.resume()
+    elif args.start_from:
+        training.start_from(args.start_from)
     parameters = sum(p.numel() for p in training.network.parameters())
     _say(f"training {parameters / 1e6:.2f} M parameters on {len(images)} images: {settings}")
     trained = training.run()

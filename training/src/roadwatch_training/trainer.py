@@ -16,6 +16,7 @@ from .augment.recipe import Recipe
 from .averaging import AveragedWeights
 from .batches import Batch, BatchPlan, batches
 from .checkpoint import Checkpoint
+from .errors import TrainingError
 from .images import ImageStore
 from .losses import Losses, detection_losses
 from .network import SHAPES, Cells, DetectorNetwork
@@ -65,6 +66,16 @@ class Training:
         self.average.load_state_dict(state.average)
         self.optimiser.load_state_dict(state.optimiser)
         self.batches_done, self.seconds_before = state.batches_done, state.seconds_spent
+
+    def start_from(self, folder: Path) -> None:
+        """Begins with the averaged weights of another training of the same width instead of random ones."""
+        state = Checkpoint.read(folder)
+        if state.settings["width"] != self.settings.width:
+            raise TrainingError(
+                f"`{folder}` holds weights of --width {state.settings['width']}, not {self.settings.width}"
+            )
+        self.average.load_state_dict(state.average)
+        self.network.load_state_dict(self.average.network.state_dict())
 
     @property
     def seconds(self) -> float:

@@ -1,10 +1,8 @@
 //! Cameras, silhouettes and random numbers that the tests of this crate share.
 
-use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use roadwatch_core::{
     BoxPx, CameraModel, CameraName, Detection, Distortion, ImageSize, Intrinsics, MeasuredFocal,
-    ObjectClass, RigCamera, Score, SizeLwh,
-    space::{Point, Transform},
+    Mount, ObjectClass, RigCamera, Score, SizeLwh, space::Point,
 };
 use roadwatch_locate::{
     CalibrationHash, ExpectedDistance, GroundPose, HullSpec, LocationTable, SilhouetteCamera,
@@ -22,14 +20,11 @@ pub(crate) const CAR: SizeLwh = SizeLwh {
 
 /// A camera 2.18 m above the ground that looks forward, `pitch_deg` downwards, rolled by `roll_deg`.
 pub(crate) fn camera(focal_px: f64, pitch_deg: f64, roll_deg: f64) -> RigCamera {
-    let level = Rotation3::from_matrix_unchecked(Matrix3::new(
-        0.0, 0.0, 1.0, //
-        -1.0, 0.0, 0.0, //
-        0.0, -1.0, 0.0,
-    ));
-    let pitch = Rotation3::from_axis_angle(&Vector3::y_axis(), pitch_deg.to_radians());
-    let roll = Rotation3::from_axis_angle(&Vector3::x_axis(), roll_deg.to_radians());
-    let rotation = UnitQuaternion::from_rotation_matrix(&(pitch * roll * level));
+    let mount = Mount {
+        pitch_rad: pitch_deg.to_radians(),
+        roll_rad: roll_deg.to_radians(),
+        ..Mount::ahead([0.85, 0.0, 2.18])
+    };
     RigCamera {
         name: CameraName::new("front").expect("a name"),
         model: CameraModel {
@@ -45,10 +40,7 @@ pub(crate) fn camera(focal_px: f64, pitch_deg: f64, roll_deg: f64) -> RigCamera 
             },
             distortion: Distortion::None,
         },
-        base_from_optical: Transform::new(Isometry3::from_parts(
-            Translation3::new(0.85, 0.0, 2.18),
-            rotation,
-        )),
+        base_from_optical: mount.base_from_optical(),
         measured_focal: Some(MeasuredFocal {
             focal_px,
             image_height_px: 540,

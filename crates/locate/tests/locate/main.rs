@@ -2,6 +2,7 @@
 
 mod common;
 mod contract;
+mod fused;
 mod table_accuracy;
 mod table_answers;
 mod table_files;

@@ -3,9 +3,9 @@
 use nalgebra::Matrix3;
 use proptest::prelude::*;
 use roadwatch_core::{
-    BoxPx, CameraId, Detection, Frame, Heading, Image, ImageSize, Located, Location, Method,
-    ObjectClass, Oriented, PerFrame, Pixels, Prior, Reidentifier, Score, SizeLwh, Timestamp,
-    TrackId,
+    BoxPx, CameraId, Detection, Frame, Heading, HeadingCandidates, Image, ImageSize, Located,
+    Location, Method, ObjectClass, Oriented, PerFrame, Pixels, Prior, Reidentifier, Score, SizeLwh,
+    Timestamp, TrackId,
     space::{Covariance, Point},
 };
 use roadwatch_reid::LeftToRight;
@@ -48,6 +48,7 @@ fn measured(x_m: f64) -> Location {
             height_m: 1.5,
         },
         method: Method::Ground,
+        headings: HeadingCandidates::default(),
         held: false,
     }
 }

@@ -1,24 +1,26 @@
 //! `roadwatch evaluate`.
 
-use super::{output::say, progress::Progress};
+use super::{output::say, progress::Progress, scoring::labelled};
 use crate::{
     cli::EvaluateArgs,
-    config::{Config, Mistakes},
+    config::{Config, DatasetChoice, Mistakes},
     failure::Failure,
     session::{Session, watch},
 };
 use anyhow::{Context as _, anyhow};
-use roadwatch_camera::{Pace, PlaybackOptions, Repeat, RigDataset};
+use roadwatch_camera::{Pace, PlaybackOptions, Repeat};
 use roadwatch_core::Method;
 use roadwatch_lab::{
-    Evaluation, LostImages, MethodUnderTest, Recorded, Recorder, Truth, TruthFilter,
-    evaluate::evaluate,
+    Evaluation, LatencyMs, LostImages, MethodUnderTest, Recorded, Recorder, Report, Truth,
+    TruthFilter, evaluate::evaluate,
 };
 use roadwatch_pipeline::{NamedSink, Overload, PipelineOptions, Running};
 use std::{sync::Arc, time::Duration};
 
 /// Often enough for a bar to look alive.
 const PROGRESS_PERIOD: Duration = Duration::from_millis(200);
+/// The recorder's place among the sinks: it is the only one.
+const RECORDER: usize = 0;
 
 /// Runs the pipeline over a labelled dataset, scores every method, writes the report.
 ///
@@ -30,15 +32,15 @@ pub fn run(args: &EvaluateArgs) -> Result<(), Failure> {
         repeat: Repeat::Once,
         frame_limit: args.frames,
     };
-    let session = Session::open(&args.config, args.dataset.clone(), playback)?;
+    let chosen = args.dataset.clone().map(|folder| DatasetChoice {
+        folder,
+        format: args.format.map(Into::into),
+    });
+    let session = Session::open(&args.config, chosen, playback)?;
     let config = session.config.clone();
-    let dataset = dataset_of(&config, args)?;
-    let truth = Truth::read(dataset.folder()).context("nothing can be scored")?;
+    let (dataset, truth) = labelled(&config)?.ok_or_else(|| no_dataset(args))?;
     check_classes(args, &truth)?;
     let rig = Arc::clone(&session.rig);
-    let frames = dataset.frames().len() as u64;
-    let images = args.frames.map_or(frames, |limit| limit.min(frames)) * rig.cameras().len() as u64;
-    let recorded = perceive(session, Progress::new(images, "images"))?;
     let filter = TruthFilter {
         min_height_px: args.min_height_px,
         max_occluded: args.max_occluded,
@@ -53,24 +55,29 @@ pub fn run(args: &EvaluateArgs) -> Result<(), Failure> {
         lost_images: LostImages::Count,
         frame_limit: args.frames,
     };
-    let report = evaluate(&evaluation, &recorded, &methods(&config));
-    report
-        .write(&args.out)
+    let images = evaluation.images().count() as u64;
+    let (recorded, latency) = perceive(session, Progress::new(images, "images"))?;
+    let report = Report {
+        latency: Some(latency),
+        ..evaluate(&evaluation, &recorded, &methods(&config))
+    };
+    let files = report
+        .write(&args.report)
         .context("the evaluation is done but not kept")?;
     if args.json {
         say!("{:#}", report.to_json());
     } else {
         say!("{}", report.to_markdown());
     }
-    eprintln!(
-        "written: {0}/report.json, {0}/report.md",
-        args.out.display()
-    );
+    eprintln!("written to {}: {}", args.report.display(), files.join(", "));
     Ok(())
 }
 
-/// Runs the pipeline over everything and keeps what it perceives.
-fn perceive(session: Session, mut progress: Progress) -> Result<Vec<Recorded>, Failure> {
+/// Runs the pipeline over everything; keeps what it perceives, and how long that took.
+fn perceive(
+    session: Session,
+    mut progress: Progress,
+) -> Result<(Vec<Recorded>, LatencyMs), Failure> {
     let rig = Arc::clone(&session.rig);
     let recorder = Recorder::default();
     let sink = NamedSink {
@@ -86,7 +93,13 @@ fn perceive(session: Session, mut progress: Progress) -> Result<Vec<Recorded>, F
     };
     watch(&running, PROGRESS_PERIOD, || false, report)?;
     progress.finish();
-    Ok(recorder.take())
+    let latency = running.metrics().received_to_published(RECORDER);
+    let millis = |time: Duration| time.as_secs_f64() * 1e3;
+    let latency = LatencyMs {
+        p50: millis(latency.p50),
+        p99: millis(latency.p99),
+    };
+    Ok((recorder.take(), latency))
 }
 
 /// A class that nobody labelled is a slip: its report would be empty.
@@ -109,14 +122,11 @@ fn check_classes(args: &EvaluateArgs, truth: &Truth) -> Result<(), Failure> {
     }
 }
 
-fn dataset_of(config: &Config, args: &EvaluateArgs) -> Result<Arc<RigDataset>, Mistakes> {
-    let dataset = config.rig.as_ref().and_then(|rig| rig.dataset.clone());
-    dataset.ok_or_else(|| {
-        Mistakes::about_file(
-            &args.config,
-            "names no dataset: set rig.dataset, or give --dataset DIR",
-        )
-    })
+fn no_dataset(args: &EvaluateArgs) -> Mistakes {
+    Mistakes::about_file(
+        &args.config,
+        "names no dataset: set rig.dataset, or give --dataset DIR",
+    )
 }
 
 /// Every method on every camera, or why a method cannot be tried.

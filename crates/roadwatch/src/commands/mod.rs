@@ -1,5 +1,6 @@
 //! One module per command.
 
+pub mod calibrate;
 pub mod check;
 pub mod evaluate;
 pub mod graph;

@@ -4,6 +4,7 @@ use super::{output::say, scoring::Scoring};
 use crate::{
     cli::{Pace, RunArgs},
     clock::wall_time,
+    config::DatasetChoice,
     failure::Failure,
     session::{Session, start_stamp, watch},
     status::{self, StatusLine},
@@ -38,7 +39,8 @@ const STATUS_PERIOD: Duration = Duration::from_secs(1);
 /// Mistakes in the configuration, a bag or node that cannot be made, a bug in a stage.
 pub fn run(args: &RunArgs) -> Result<(), Failure> {
     let stop = stop_on_signals()?;
-    let session = Session::open(&args.config, args.dataset.clone(), playback(args)?)?;
+    let dataset = args.dataset.clone().map(DatasetChoice::from);
+    let session = Session::open(&args.config, dataset, playback(args)?)?;
     let mut sinks = sinks(args, &session)?;
     let scoring = if args.score {
         let scoring = Scoring::prepare(&session)?;

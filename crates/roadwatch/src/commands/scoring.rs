@@ -1,12 +1,29 @@
 //! A run compared with the labels of its dataset.
 
-use crate::{failure::Failure, session::Session};
+use crate::{config::Config, failure::Failure, session::Session};
 use anyhow::{Context as _, anyhow};
 use roadwatch_camera::RigDataset;
 use roadwatch_core::Rig;
 use roadwatch_lab::{Evaluation, LostImages, Recorder, Report, Truth, TruthFilter, evaluate};
 use roadwatch_pipeline::NamedSink;
 use std::sync::Arc;
+
+/// The dataset that a configuration plays and its labels; `None` when it plays none.
+///
+/// # Errors
+/// When the dataset has no usable labels.
+pub(super) fn labelled(config: &Config) -> Result<Option<(Arc<RigDataset>, Truth)>, Failure> {
+    const CONTEXT: &str = "nothing can be scored";
+    let Some(rig) = &config.rig else {
+        return Ok(None);
+    };
+    let Some(dataset) = rig.dataset.clone() else {
+        return Ok(None);
+    };
+    let truth = rig.format.read_truth(&dataset).context(CONTEXT)?;
+    truth.check_cameras(&rig.rig).context(CONTEXT)?;
+    Ok(Some((dataset, truth)))
+}
 
 /// Everything that the comparison needs, checked before the run.
 pub(super) struct Scoring {
@@ -22,15 +39,9 @@ impl Scoring {
     /// # Errors
     /// When the session plays no dataset, or one without labels.
     pub(super) fn prepare(session: &Session) -> Result<Self, Failure> {
-        let dataset = session
-            .config
-            .rig
-            .as_ref()
-            .and_then(|rig| rig.dataset.clone());
-        let dataset = dataset.ok_or_else(|| {
+        let (dataset, truth) = labelled(&session.config)?.ok_or_else(|| {
             anyhow!("--score needs a labelled dataset: set rig.dataset, or give --dataset DIR")
         })?;
-        let truth = Truth::read(dataset.folder()).context("nothing can be scored")?;
         Ok(Self {
             rig: Arc::clone(&session.rig),
             dataset,

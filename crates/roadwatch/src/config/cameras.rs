@@ -1,16 +1,19 @@
 //! `[rig]` and `[[camera]]`: which cameras there are, how they see, where they sit, what feeds them.
 
-use super::reader::Reader;
+use super::{camera_info, reader::Reader};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use roadwatch_camera::{FrameRate, RigDataset};
 use roadwatch_core::{
     CameraModel, CameraName, Distortion, ImageSize, Intrinsics, MeasuredFocal, Method, Rig,
     RigCamera, Timestamp, error_chain, space::Transform,
 };
+use roadwatch_lab::DatasetFormat;
 use std::{path::PathBuf, sync::Arc};
 
 /// How far a quaternion's length may be from 1: what printing it with four digits costs.
 const UNIT_TOLERANCE: f64 = 1e-3;
+/// What a `camera_info` says instead.
+const LENS_KEYS: [&str; 6] = ["fx", "fy", "cx", "cy", "distortion_model", "distortion"];
 const LARGEST_SIDE_PX: u32 = 16_384;
 /// Beyond this a focal length is a slip of units, pixels.
 const LONGEST_FOCAL_PX: f64 = 1e6;
@@ -65,11 +68,32 @@ pub struct RigConfig {
     pub cameras: Vec<CameraConfig>,
     /// The dataset that some of them play; `None` without one.
     pub dataset: Option<Arc<RigDataset>>,
+    /// How the dataset is laid out.
+    pub format: DatasetFormat,
+}
+
+/// The dataset that the command line names instead of the configured one.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DatasetChoice {
+    /// Its folder.
+    pub folder: PathBuf,
+    /// How it is laid out; `None` as the configuration says.
+    pub format: Option<DatasetFormat>,
+}
+
+impl From<PathBuf> for DatasetChoice {
+    fn from(folder: PathBuf) -> Self {
+        Self {
+            folder,
+            format: None,
+        }
+    }
 }
 
 /// What `[rig]` says by itself.
 pub(super) struct RigHead {
     dataset: DatasetState,
+    format: DatasetFormat,
     ground_z_m: f64,
     /// The dataset came from the command line: `[[camera]]` tables may then name cameras it has not.
     overridden: bool,
@@ -83,14 +107,16 @@ enum DatasetState {
     Open(Arc<RigDataset>),
 }
 
-pub(super) fn read_head(rig: &Reader<'_, '_>, dataset_override: Option<PathBuf>) -> RigHead {
+pub(super) fn read_head(rig: &Reader<'_, '_>, chosen: Option<DatasetChoice>) -> RigHead {
     let configured = rig.path("dataset");
-    let overridden = dataset_override.is_some();
-    let dataset = match dataset_override
-        .or(configured)
-        .as_deref()
-        .map(RigDataset::open)
-    {
+    let configured_format = rig.choice("format", &DatasetFormat::ALL);
+    let overridden = chosen.is_some();
+    let (folder, format) = match chosen {
+        Some(chosen) => (Some(chosen.folder), chosen.format.or(configured_format)),
+        None => (configured, configured_format),
+    };
+    let format = format.unwrap_or_default();
+    let dataset = match folder.map(|folder| format.open(&folder)) {
         None => DatasetState::Absent,
         Some(Ok(dataset)) => DatasetState::Open(Arc::new(dataset)),
         Some(Err(error)) => {
@@ -100,6 +126,7 @@ pub(super) fn read_head(rig: &Reader<'_, '_>, dataset_override: Option<PathBuf>)
     };
     RigHead {
         dataset,
+        format,
         ground_z_m: rig
             .number("ground_z_m", -FARTHEST_M..=FARTHEST_M)
             .unwrap_or(0.0),
@@ -135,6 +162,7 @@ pub(super) fn read(
         rig: built.ok()?,
         cameras: configs,
         dataset,
+        format: head.format,
     })
 }
 
@@ -152,7 +180,8 @@ fn read_table(
     let known = cameras
         .iter_mut()
         .find(|(camera, _)| Some(&camera.name) == name.as_ref());
-    let is_whole = table.has("fx") || matches!(head.dataset, DatasetState::Absent);
+    let has_lens = table.has("fx") || (table.has(camera_info::KEY) && table.has("position_m"));
+    let is_whole = has_lens || matches!(head.dataset, DatasetState::Absent);
     match known {
         Some((camera, config)) if !is_whole && config.key == DATASET_KEY => {
             adjust(table, camera, config)
@@ -166,6 +195,7 @@ fn read_table(
         None => {
             read_config(table, SourceConfig::Dataset(0));
             measured_focal(table, 1);
+            camera_info::read(table, None);
             if matches!(head.dataset, DatasetState::Open(_)) && !head.overridden {
                 table.note("name", "the dataset has no camera of this name");
             }
@@ -189,6 +219,9 @@ fn from_dataset(dataset: &RigDataset) -> Vec<(RigCamera, CameraConfig)> {
 /// What a `[[camera]]` table adds to a camera of the dataset.
 fn adjust(table: &Reader<'_, '_>, camera: &mut RigCamera, config: &mut CameraConfig) {
     camera.measured_focal = measured_focal(table, camera.model.size.height_px);
+    if let Some(model) = camera_info::read(table, Some(camera.model.size)) {
+        camera.model = model;
+    }
     *config = read_config(table, config.source.clone());
 }
 
@@ -231,7 +264,25 @@ fn read_camera(
     Some((camera, config?))
 }
 
+/// From `camera_info`, or from keys of its own.
 fn read_model(table: &Reader<'_, '_>) -> Option<CameraModel> {
+    if !table.has(camera_info::KEY) {
+        return read_lens(table);
+    }
+    let side = |key| table.integer(key, 1..=LARGEST_SIDE_PX);
+    let given = side("width").zip(side("height"));
+    let expected = given.map(|(width_px, height_px)| ImageSize {
+        width_px,
+        height_px,
+    });
+    for key in LENS_KEYS.into_iter().filter(|key| table.has(key)) {
+        table.note(key, "is in the camera_info already: name the lens once");
+        table.mark_read(key);
+    }
+    camera_info::read(table, expected)
+}
+
+fn read_lens(table: &Reader<'_, '_>) -> Option<CameraModel> {
     let width_px = table.required_integer("width", 1..=LARGEST_SIDE_PX);
     let height_px = table.required_integer("height", 1..=LARGEST_SIDE_PX);
     let focal = |key| table.required_number(key, 1.0..=LONGEST_FOCAL_PX);

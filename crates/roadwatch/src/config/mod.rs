@@ -1,5 +1,6 @@
 //! Configuration: what the user typed, checked whole, as what it means.
 
+mod camera_info;
 pub mod cameras;
 pub mod detector;
 mod environment;
@@ -10,7 +11,7 @@ mod notes;
 mod reader;
 mod values;
 
-pub use cameras::{CameraConfig, RigConfig, SourceConfig};
+pub use cameras::{CameraConfig, DatasetChoice, RigConfig, SourceConfig};
 pub use detector::DetectorConfig;
 pub use environment::Environment;
 pub use locate::LocateConfig;
@@ -20,11 +21,7 @@ pub use notes::Notes;
 
 use reader::{Document, Reader};
 use roadwatch_pipeline::PipelineOptions;
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    time::Duration,
-};
+use std::{fs, path::Path, time::Duration};
 
 /// Longer than this no round is worth waiting for, seconds.
 const LONGEST_SCENE_TIMEOUT_SECS: f64 = 60.0;
@@ -55,7 +52,7 @@ impl Config {
     /// When the file cannot be read or is not TOML.
     pub fn load(
         file: &Path,
-        dataset: Option<PathBuf>,
+        dataset: Option<DatasetChoice>,
         environment: &Environment,
     ) -> Result<Self, Mistakes> {
         let text = fs::read_to_string(file)
@@ -70,7 +67,7 @@ impl Config {
     pub fn parse(
         file: &Path,
         text: &str,
-        dataset: Option<PathBuf>,
+        dataset: Option<DatasetChoice>,
         environment: &Environment,
     ) -> Result<Self, Mistakes> {
         let document = Document::new(file, text, environment);
@@ -85,7 +82,7 @@ impl Config {
     }
 }
 
-fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<PathBuf>) -> Config {
+fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<DatasetChoice>) -> Config {
     let sections = ["node", "detector", "rig", "locate", "scene"].map(|key| root.table(key));
     let [node, detector, rig, locate, scene] = &sections;
     let camera_tables = root.tables("camera");

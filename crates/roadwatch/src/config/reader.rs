@@ -139,6 +139,11 @@ impl<'d, 'a> Reader<'d, 'a> {
             .is_some_and(|value| value.get_ref().is_str())
     }
 
+    /// Counts a key as known, whatever its value.
+    pub(super) fn mark_read(&self, key: &str) {
+        self.read.borrow_mut().insert(key.to_owned());
+    }
+
     /// Notes a mistake at a key's value, or at the table's head when the key is absent.
     pub(super) fn note(&self, key: &str, what: impl Into<String>) {
         let at = self.value(key).map(Spanned::span).or(self.span.clone());

@@ -1,14 +1,14 @@
 //! A made-up rig of two cameras and what they see, for the tests of this crate.
 
-use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::Matrix3;
 use roadwatch_core::{
-    BoxPx, CameraId, CameraModel, CameraName, Detection, Distortion, Frame, Heading, Image,
-    ImageSize, Intrinsics, Located, Location, Method, ObjectClass, Oriented, Output, PerFrame,
-    Perceived, Pixels, Rig, RigCamera, Scene, SceneObject, Score, SizeLwh, Timestamp, Track,
-    TrackId,
-    space::{Covariance, Point, Transform},
+    BoxPx, CameraId, CameraModel, CameraName, Detection, Distortion, Frame, Heading,
+    HeadingCandidates, Image, ImageSize, Intrinsics, Located, Location, Method, Mount, ObjectClass,
+    Oriented, Output, PerFrame, Perceived, Pixels, Rig, RigCamera, Scene, SceneObject, Score,
+    SizeLwh, Timestamp, Track, TrackId,
+    space::{Covariance, Point},
 };
-use std::{sync::Arc, time::Instant};
+use std::{f64::consts::PI, sync::Arc, time::Instant};
 
 /// 0.1 s, between two frames of a camera.
 pub(crate) const INTERVAL_NS: i64 = 100_000_000;
@@ -19,16 +19,17 @@ pub(crate) const START_NS: i64 = 1_557_539_956_439_383_000;
 pub(crate) fn two_cameras() -> Rig {
     let lens = Distortion::from_ros("plumb_bob", &[-0.1, 0.01, 0.0, 0.0, 0.0]).expect("known");
     let cameras = vec![
-        camera("front", Vector3::x(), 1.0, lens),
-        camera("rear", -Vector3::x(), -1.0, Distortion::None),
+        camera("front", 0.0, 1.0, lens),
+        camera("rear", PI, -1.0, Distortion::None),
     ];
     Rig::new(cameras, 0.0).expect("two names")
 }
 
-fn camera(name: &str, forward: Vector3<f64>, x_m: f64, distortion: Distortion) -> RigCamera {
-    let down = -Vector3::z();
-    let axes = Matrix3::from_columns(&[down.cross(&forward), down, forward]);
-    let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes));
+fn camera(name: &str, yaw_rad: f64, x_m: f64, distortion: Distortion) -> RigCamera {
+    let mount = Mount {
+        yaw_rad,
+        ..Mount::ahead([x_m, 0.0, 1.5])
+    };
     RigCamera {
         name: CameraName::new(name).expect("a token"),
         model: CameraModel {
@@ -44,10 +45,7 @@ fn camera(name: &str, forward: Vector3<f64>, x_m: f64, distortion: Distortion) -
             },
             distortion,
         },
-        base_from_optical: Transform::new(Isometry3::from_parts(
-            Translation3::new(x_m, 0.0, 1.5),
-            rotation,
-        )),
+        base_from_optical: mount.base_from_optical(),
         measured_focal: None,
     }
 }
@@ -116,6 +114,7 @@ fn track(id: u64, class: &str, yaw_rad: Option<f64>) -> Track {
             height_m: 1.5,
         },
         method: Method::Ground,
+        headings: HeadingCandidates::default(),
         held: false,
     };
     Track {
