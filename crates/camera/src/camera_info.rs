@@ -187,7 +187,7 @@ mod tests {
             (
                 "  rows: 3\n  cols: 4",
                 "  rows: 3\n  cols: 3",
-                "front.yaml:20: projection_matrix: expected 3 x 4 with 12 numbers, found 3 x 3 with 12",
+                "front.yaml:21: projection_matrix: expected 3 x 4 with 12 numbers, found 3 x 3 with 12",
             ),
             (
                 "plumb_bob",

@@ -127,6 +127,15 @@ impl Evaluation<'_> {
         })
     }
 
+    /// Every detection that was taken for an object that is scored, with that object.
+    #[must_use]
+    pub fn pairs(&self, recorded: &[Recorded]) -> Vec<(Detection, Arc<Target>)> {
+        let pairs = self.matched(recorded).pairs.into_iter();
+        pairs
+            .map(|pair| (pair.detection.clone(), pair.target))
+            .collect()
+    }
+
     fn matched<'r>(&self, recorded: &'r [Recorded]) -> Matched<'r> {
         let by_moment: HashMap<_, _> = recorded
             .iter()

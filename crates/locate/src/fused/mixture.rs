@@ -50,8 +50,15 @@ impl Mixture {
 
     /// The likeliest heading on either side of the ray, which looks along `ray_rad`, each with its opposite.
     pub(super) fn headings(&self, ray_rad: f64) -> HeadingCandidates {
-        let found = [Side::Left, Side::Right].map(|side| self.heading_on(side, ray_rad));
-        let mut found: ArrayVec<_, 2> = found.into_iter().flatten().collect();
+        let mut weights = [0.0; HEADINGS];
+        for (weight, of) in &self.weighted {
+            weights[of.heading] += weight;
+        }
+        let sides: [bool; HEADINGS] =
+            std::array::from_fn(|heading| wrapped(yaw_of(heading) - ray_rad, PI) >= 0.0);
+        let found =
+            [true, false].map(|side| self.heading_on(&sides.map(|of| of == side), &weights));
+        let mut found = ArrayVec::from(found);
         found.retain(|(weight, _)| *weight >= LEAST_WEIGHT);
         found.sort_by(|a, b| b.0.total_cmp(&a.0));
         let kept: f64 = found.iter().map(|(weight, _)| weight).sum();
@@ -67,48 +74,31 @@ impl Mixture {
         found.into_iter().flat_map(both_ways).collect()
     }
 
-    /// That side's weight, and its best heading, with a deviation over all of the side.
-    fn heading_on(&self, side: Side, ray_rad: f64) -> Option<(f64, Heading)> {
-        let mut weights = [0.0; HEADINGS];
-        let of_side = |heading: usize| Side::of(yaw_of(heading), ray_rad) == side;
-        let explanations = self.weighted.iter().filter(|(_, of)| of_side(of.heading));
-        for (weight, of) in explanations.clone() {
-            weights[of.heading] += weight;
-        }
-        let best = (0..HEADINGS).max_by(|&a, &b| weights[a].total_cmp(&weights[b]))?;
-        let about_rad = yaw_of(best);
+    /// The weight of one side of the ray, and its best heading, with a deviation over all of the side.
+    fn heading_on(&self, side: &[bool; HEADINGS], weights: &[f64; HEADINGS]) -> (f64, Heading) {
+        let of_side = (0..HEADINGS).filter(|&heading| side[heading]);
+        let best = of_side
+            .max_by(|&a, &b| weights[a].total_cmp(&weights[b]))
+            .unwrap_or(0);
+        let explanations = self.weighted.iter().filter(|(_, of)| side[of.heading]);
         let at_best = explanations.clone().filter(|(_, of)| of.heading == best);
-        let turn_rad = at_best
-            .map(|(weight, of)| weight * of.turn_rad)
-            .sum::<f64>()
-            / weights[best];
-        let sum: f64 = weights.iter().sum();
-        let variance = explanations.map(|(weight, of)| {
-            let apart = wrapped(yaw_of(of.heading) + of.turn_rad - about_rad - turn_rad, PI);
-            weight * (of.turn_std_rad * of.turn_std_rad + apart * apart)
-        });
-        let heading = Heading {
-            yaw_rad: about_rad + turn_rad,
-            std_dev_rad: (variance.sum::<f64>() / sum).sqrt(),
-        };
-        (sum > 0.0).then_some((sum, heading))
-    }
-}
-
-/// Which end of the object is farther to the left, seen from the camera.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Side {
-    Left,
-    Right,
-}
-
-impl Side {
-    fn of(yaw_rad: f64, ray_rad: f64) -> Self {
-        if wrapped(yaw_rad - ray_rad, PI) >= 0.0 {
-            Self::Left
-        } else {
-            Self::Right
+        let turns = at_best.map(|(weight, of)| weight * of.turn_rad);
+        let yaw_rad = yaw_of(best) + turns.sum::<f64>() / weights[best];
+        let mut sum = 0.0;
+        let mut variance = 0.0;
+        for (weight, of) in explanations {
+            let apart = wrapped(yaw_of(of.heading) + of.turn_rad - yaw_rad, PI);
+            sum += weight;
+            variance += weight * (of.turn_std_rad * of.turn_std_rad + apart * apart);
         }
+        let std_dev_rad = (variance / sum).sqrt();
+        (
+            sum,
+            Heading {
+                yaw_rad,
+                std_dev_rad,
+            },
+        )
     }
 }
 

@@ -95,7 +95,7 @@ pub(super) fn read_method(table: &Reader<'_, '_>) -> Option<Method> {
 }
 
 pub(super) fn read(locate: &Reader<'_, '_>) -> LocateConfig {
-    let mut options = LocatorOptions::new(Method::Table);
+    let mut options = LocatorOptions::new(Method::Fused);
     options.sizes = sizes(locate);
     options.max_range_m = locate
         .number("max_range_m", 1.0..=10_000.0)
@@ -114,7 +114,7 @@ pub(super) fn read(locate: &Reader<'_, '_>) -> LocateConfig {
     let grid = grid(&table);
     table.finish();
     LocateConfig {
-        method: read_method(locate).unwrap_or(Method::Table),
+        method: read_method(locate).unwrap_or(Method::Fused),
         options,
         grid,
     }

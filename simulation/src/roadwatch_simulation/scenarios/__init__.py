@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from ..errors import SimulationError
 from ..scene import Scene
-from . import paper
+from . import paper, study
 from .drive import traffic
 from .training import training_scene
 
@@ -31,6 +31,8 @@ SCENARIOS: dict[str, Scenario] = {
     "paper_y_path": Scenario("one car drives away from a full-HD camera, 8 to 45 m", 75, paper.y_path),
     "turntable": Scenario("one car turns through 360 degrees, 12 m ahead", 180, paper.turntable),
     "grid": Scenario("one car stands in every cell of a grid once", len(paper.grid_cells()), paper.grid),
+    "long_path": Scenario("one car drives away from a full-HD camera, 6 to 60 m", 55, study.long_path),
+    "vehicles": Scenario("every kind of vehicle, anywhere, at any heading", 60, study.vehicles),
     "traffic": Scenario("six cameras on a car in moving traffic", 120, traffic),
     "training": Scenario("one random picture for training a detector", 1, _one_picture),
 }

@@ -26,19 +26,19 @@ CAR_MARGIN_M = 2.8
 
 def y_path(seed: int, frames: int) -> Scene:
     """A car drives away along the optical axis, from 8 to 45 m."""
-    return _one_car(seed, frames, _evenly((8.0, 0.0), (45.0, 0.0), frames))
+    return one_car(seed, frames, evenly((8.0, 0.0), (45.0, 0.0), frames))
 
 
 def x_path(seed: int, frames: int) -> Scene:
     """A car crosses 30 m ahead, from 12 m left to 12 m right."""
-    return _one_car(seed, frames, _evenly((30.0, 12.0), (30.0, -12.0), frames))
+    return one_car(seed, frames, evenly((30.0, 12.0), (30.0, -12.0), frames))
 
 
 def turntable(seed: int, frames: int) -> Scene:
     """A car 12 m ahead turns once about itself, from facing away (0) to 360 degrees."""
     turn = 2.0 * math.pi / frames
     waypoints = (Waypoint(frame / RATE_HZ, TURNTABLE_M, 0.0, frame * turn) for frame in range(frames))
-    return _one_car(seed, frames, Path(tuple(waypoints)))
+    return one_car(seed, frames, Path(tuple(waypoints)))
 
 
 def grid(seed: int, frames: int) -> Scene:
@@ -50,7 +50,7 @@ def grid(seed: int, frames: int) -> Scene:
         ahead, aside = cells[frame % len(cells)] + rng.uniform(-0.4, 0.4, 2) * GRID_STEP_M
         yaw = float(rng.uniform(0.0, 2.0 * math.pi))
         waypoints.append(Waypoint(frame / RATE_HZ, float(ahead), float(aside), yaw))
-    return _one_car(seed, frames, Path(tuple(waypoints)))
+    return one_car(seed, frames, Path(tuple(waypoints)))
 
 
 def grid_cells() -> np.ndarray:
@@ -66,19 +66,22 @@ def grid_cells() -> np.ndarray:
     return np.array(cells)
 
 
-def _evenly(start: tuple[float, float], end: tuple[float, float], frames: int) -> Path:
+def evenly(start: tuple[float, float], end: tuple[float, float], frames: int) -> Path:
+    """From `start` (x, y; m) to `end`, the same step from each frame to the next."""
     speed = math.dist(start, end) / max(1, frames - 1) * RATE_HZ
     return straight(start, end, 0.0, speed)
 
 
-def _one_car(seed: int, frames: int, path: Path) -> Scene:
+def one_car(seed: int, frames: int, path: Path) -> Scene:
+    """One car on a plain, of a kind that follows from the seed."""
     kind = PATH_KINDS[seed % len(PATH_KINDS)]
     light = "sun" if seed % 2 == 0 else "overcast"
     return Scene(
-        frames=frames, rate_hz=RATE_HZ, cameras=(_camera(),), objects=(SceneObject("car", kind, seed, path),),
+        frames=frames, rate_hz=RATE_HZ, cameras=(camera(),), objects=(SceneObject("car", kind, seed, path),),
         seed=seed, environment=Environment("plain", seed, light, 150.0, 40.0),
     )  # fmt: skip
 
 
-def _camera() -> CameraMount:
+def camera() -> CameraMount:
+    """The full-HD camera, level over the origin."""
     return mount("camera", SIZE_PX, FOCAL_PX, (0.0, 0.0, CAMERA_HEIGHT_M))
