@@ -176,28 +176,13 @@ fn reason<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use roadwatch_core::{
-        BoxPx, CameraModel, Distortion, ImageSize, Intrinsics, Mount, space::Point,
-    };
+    use crate::made;
+    use roadwatch_core::{BoxPx, Mount, space::Point};
 
     fn camera() -> RigCamera {
         RigCamera {
-            name: CameraName::new("front").expect("a name"),
-            model: CameraModel {
-                size: ImageSize {
-                    width_px: 960,
-                    height_px: 540,
-                },
-                intrinsics: Intrinsics {
-                    fx: 900.0,
-                    fy: 900.0,
-                    cx: 480.0,
-                    cy: 260.0,
-                },
-                distortion: Distortion::None,
-            },
             base_from_optical: Mount::ahead([1.0, 0.0, 1.8]).base_from_optical(),
-            measured_focal: None,
+            ..made::camera()
         }
     }
 

@@ -21,6 +21,7 @@ pub mod report;
 pub mod sample;
 pub mod sample_table;
 pub mod score;
+pub mod study;
 pub mod truth;
 
 pub use bootstrap::Intervals;
@@ -33,4 +34,5 @@ pub use report::{LatencyMs, Report, ReportError};
 pub use sample::{Estimator, Sample, Target};
 pub use sample_table::SampleTable;
 pub use score::Figures;
+pub use study::{Study, StudyScene};
 pub use truth::{Truth, TruthError, TruthObject};

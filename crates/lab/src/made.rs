@@ -2,6 +2,7 @@
 
 use crate::{
     sample::{Estimator, Sample, Target},
+    sample_table::SampleTable,
     truth::TruthObject,
 };
 use nalgebra::Matrix3;
@@ -94,6 +95,15 @@ pub(crate) fn sample_of(id: &str, found_m: f64, range_m: f64) -> Sample {
 /// The same without an answer.
 pub(crate) fn without_place(range_m: f64) -> Sample {
     Sample::judge(Estimator::Published, &target("a", range_m), None)
+}
+
+/// A table of these samples and their objects.
+pub(crate) fn table(samples: Vec<Sample>) -> SampleTable {
+    let targets = samples.iter().map(|sample| Arc::clone(&sample.target));
+    SampleTable {
+        targets: targets.collect(),
+        samples,
+    }
 }
 
 fn target(id: &str, range_m: f64) -> Arc<Target> {

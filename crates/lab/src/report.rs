@@ -1,7 +1,7 @@
 //! The report: `report.json` for programs, `report.md` for people, plots beside them.
 
 mod json;
-mod markdown;
+pub(crate) mod markdown;
 
 use crate::{
     bootstrap::Intervals,

@@ -83,21 +83,14 @@ impl SampleTable {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::made::sample;
+    use crate::made::{sample, table};
 
     #[test]
     fn groups_come_in_order_and_hold_every_sample_once() {
         let samples: Vec<_> = [62.0, 5.0, 15.0, 12.0]
             .map(|range_m| sample(range_m + 1.0, range_m))
             .into();
-        let table = SampleTable {
-            targets: samples
-                .iter()
-                .map(|sample| Arc::clone(&sample.target))
-                .collect(),
-            samples,
-        };
-        let groups = table.groups(Grouping::Distance);
+        let groups = table(samples).groups(Grouping::Distance);
         let counted = groups.iter().map(|group| {
             let n = group.figures[&Estimator::Published].distance.n;
             (group.name.as_str(), group.objects, n)

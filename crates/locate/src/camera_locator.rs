@@ -3,7 +3,7 @@
 use crate::{
     box_noise::BoxNoise,
     estimate::Estimate,
-    fused::{FusedEstimate, FusedLocator},
+    fused::{FusedEstimate, FusedLocator, HiddenShares},
     ground::{GroundPlane, MountNoise},
     hold::HoldOptions,
     hull::HullSpec,
@@ -27,8 +27,10 @@ pub struct LocatorOptions {
     pub sizes: ClassSizes,
     /// How far box edges stray.
     pub box_noise: BoxNoise,
-    /// How far the mount strays, for [`Method::Ground`].
+    /// How far the mount strays, for [`Method::Ground`] and [`Method::Fused`].
     pub mount_noise: MountNoise,
+    /// How often objects are hidden in part, for [`Method::Fused`].
+    pub hidden: HiddenShares,
     /// Beyond this `range_m` nothing is located, metres.
     pub max_range_m: f64,
     /// The table, for [`Method::Table`].
@@ -51,6 +53,7 @@ impl LocatorOptions {
             sizes: ClassSizes::default(),
             box_noise: BoxNoise::default(),
             mount_noise: MountNoise::default(),
+            hidden: HiddenShares::default(),
             max_range_m: Self::DEFAULT_MAX_RANGE_M,
             table: None,
             table_options: TableOptions::default(),
@@ -242,7 +245,7 @@ fn strategy(
         Method::TriangleFy => Ok(Strategy::Fy),
         Method::Ground => Ok(Strategy::Ground),
         Method::Fused => {
-            let fused = FusedLocator::new(camera, plane, &options.sizes);
+            let fused = FusedLocator::new(camera, plane, &options.sizes, options.hidden);
             Ok(Strategy::Fused(Box::new(fused)))
         }
         Method::Table => {

@@ -24,8 +24,10 @@ use crate::{
 };
 use arrayvec::ArrayVec;
 use edges::SeenBox;
+pub use fit::HiddenShares;
 use fit::{Explanation, Shape, View};
 use mixture::{HEADINGS, MOST_EXPLANATIONS, Mixture, wrapped, yaw_of};
+use multiversion::multiversion;
 use nalgebra::{Matrix3, Vector2};
 use roadwatch_core::{
     BoxPx, Heading, HeadingCandidates, ObjectClass, RigCamera, SizeLwh,
@@ -59,12 +61,18 @@ pub struct FusedEstimate {
 impl FusedLocator {
     /// The locator of a camera over a ground plane, for every class whose size is known.
     #[must_use]
-    pub fn new(camera: &RigCamera, plane: &GroundPlane, sizes: &ClassSizes) -> Self {
+    pub fn new(
+        camera: &RigCamera,
+        plane: &GroundPlane,
+        sizes: &ClassSizes,
+        hidden: HiddenShares,
+    ) -> Self {
         let isometry = camera.base_from_optical.isometry.inverse();
         let view = View {
             eye: camera.base_from_optical.origin().coords.coords,
             optical_from_base: *isometry.rotation.to_rotation_matrix().matrix(),
             ground_z_m: plane.z_m,
+            hidden,
             ground_std: (
                 plane.mount_noise.ground_m,
                 plane.mount_noise.pitch_rad.tan(),
@@ -94,18 +102,7 @@ impl FusedLocator {
         let (shape, size) = self.shapes.get(class)?;
         let seen = SeenBox::new(&camera.model, box_px, noise)?;
         let start = self.start(camera, box_px, &seen, *size)?;
-        let mut explanations = ArrayVec::<Explanation, MOST_EXPLANATIONS>::new();
-        let mut place = None;
-        for heading in 0..HEADINGS {
-            // Headings next to each other have places next to each other.
-            let from = place.or_else(|| self.view.approach(shape, heading, &seen, start));
-            let fit = from.and_then(|from| self.view.fit(shape, heading, &seen, (from, start)));
-            let Some(fit) = fit else {
-                continue;
-            };
-            place = Some(fit.best);
-            explanations.extend(fit.explanations(&seen).map(|found| expected(found, prior)));
-        }
+        let explanations = explanations(&self.view, shape, &seen, start, prior);
         let mixture = Mixture::new(&explanations)?;
         let (place, flat) = mixture.place();
         let away = place - self.view.eye.xy();
@@ -144,6 +141,32 @@ impl FusedLocator {
         let distance_m = (by_height.min(by_width) * level.norm()).clamp(least_m, self.max_range_m);
         Some(self.view.eye.xy() + level.try_normalize(f64::EPSILON)? * distance_m)
     }
+}
+
+/// Every heading explained every way.
+#[multiversion(targets("x86_64+avx2+fma"))]
+fn explanations(
+    view: &View,
+    shape: &Shape,
+    seen: &SeenBox,
+    start: Vector2<f64>,
+    prior: Option<&Heading>,
+) -> ArrayVec<Explanation, MOST_EXPLANATIONS> {
+    let mut explanations = ArrayVec::new();
+    let mut place = None;
+    for heading in 0..HEADINGS {
+        // Headings next to each other have places next to each other.
+        let from = place.or_else(|| view.approach(shape, heading, seen, start));
+        let fit = from.and_then(|from| view.fit(shape, heading, seen, (from, start)));
+        let Some(fit) = fit else {
+            continue;
+        };
+        place = Some(fit.best);
+        for found in fit.explanations(seen) {
+            explanations.push(expected(found, prior));
+        }
+    }
+    explanations
 }
 
 /// An explanation by how well it agrees with the heading the object had.

@@ -19,7 +19,7 @@ pub mod triangle;
 pub use box_noise::BoxNoise;
 pub use camera_locator::{CameraLocator, LocatorError, LocatorOptions};
 pub use estimate::Estimate;
-pub use fused::{FusedEstimate, FusedLocator};
+pub use fused::{FusedEstimate, FusedLocator, HiddenShares};
 pub use ground::{GroundPlane, MountNoise};
 pub use hold::HoldOptions;
 pub use hull::{GroundPose, HullSpec, SilhouetteCamera};

@@ -3,6 +3,7 @@
 mod calibrate;
 mod evaluate;
 mod models;
+mod study;
 mod table;
 
 pub use calibrate::{
@@ -11,6 +12,7 @@ pub use calibrate::{
 };
 pub use evaluate::{EvaluateArgs, FormatName};
 pub use models::{ModelsCommand, ModelsFetchArgs, ModelsListArgs, ModelsVerifyArgs};
+pub use study::{StudyArgs, StudyBoxes};
 pub use table::{TableBuildArgs, TableCommand, TableInspectArgs, TableQueryArgs};
 
 use crate::{commands, failure::Failure};
@@ -53,6 +55,8 @@ pub enum Command {
     Table(TableCommand),
     /// Run the pipeline over a labelled dataset and score every method side by side.
     Evaluate(EvaluateArgs),
+    /// Repeat the paper's studies on simulated drives whose truth is exact.
+    Study(StudyArgs),
     /// Detector models: list, fetch, verify.
     #[command(subcommand)]
     Models(ModelsCommand),
@@ -157,6 +161,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Table(TableCommand::Inspect(args)) => commands::table::inspect(&args),
         Command::Table(TableCommand::Query(args)) => commands::table::query(&args),
         Command::Evaluate(args) => commands::evaluate::run(&args),
+        Command::Study(args) => commands::study::run(&args),
         Command::Models(ModelsCommand::List(args)) => commands::models::list(&args),
         Command::Models(ModelsCommand::Fetch(args)) => commands::models::fetch(&args),
         Command::Models(ModelsCommand::Verify(args)) => commands::models::verify(&args),

@@ -98,13 +98,7 @@ fn a_trusted_height_stays_and_the_pitch_is_found_all_the_same() {
 }
 
 fn refusal(arguments: &[&str]) -> String {
-    let output = run(&[&["calibrate"], arguments].concat());
-    let text = stderr(&output);
-    assert!(
-        !output.status.success() && !text.contains("panicked"),
-        "{text}"
-    );
-    text
+    support::refusal(&[&["calibrate"], arguments].concat())
 }
 
 #[test]

@@ -36,13 +36,7 @@ fn dataset(folder: &Path, truth: &str) -> String {
 }
 
 fn refusal(arguments: &[&str]) -> String {
-    let output = run(&[&["table", "build"], arguments].concat());
-    let text = stderr(&output);
-    assert!(
-        !output.status.success() && !text.contains("panicked"),
-        "{text}"
-    );
-    text
+    support::refusal(&[&["table", "build"], arguments].concat())
 }
 
 #[test]

@@ -4,7 +4,10 @@ mod bars;
 mod from_above;
 mod scatter;
 mod sigmas;
+mod study;
 mod style;
+
+pub use study::draw_study;
 
 use crate::{
     sample::{Estimate, Estimator, Target},
@@ -130,23 +133,16 @@ fn reach_m(table: &SampleTable) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::made::sample;
-    use std::{fs, sync::Arc};
+    use crate::made::{sample, table};
+    use std::fs;
 
     #[test]
     fn every_plot_is_a_picture_that_shows_something() {
         let samples: Vec<_> = (1..40)
             .map(|at| sample(f64::from(at) * 1.6, f64::from(at) * 1.5))
             .collect();
-        let table = SampleTable {
-            targets: samples
-                .iter()
-                .map(|sample| Arc::clone(&sample.target))
-                .collect(),
-            samples,
-        };
         let folder = tempfile::tempdir().expect("a folder");
-        let plots = draw(&table, folder.path()).expect("drawn");
+        let plots = draw(&table(samples), folder.path()).expect("drawn");
         assert_eq!(plots.len(), PLOTS.len());
         for plot in plots {
             let file = folder.path().join(plot.file);

@@ -239,7 +239,7 @@ pub(super) fn links(plots: &[Plot]) -> String {
     format!("\n## Plots\n{}", shown.collect::<String>())
 }
 
-fn row(cells: impl IntoIterator<Item = String>) -> String {
+pub(crate) fn row(cells: impl IntoIterator<Item = String>) -> String {
     let cells: Vec<String> = cells.into_iter().collect();
     format!("| {} |\n", cells.join(" | "))
 }
@@ -251,7 +251,7 @@ fn between(interval: Option<Interval>, factor: f64) -> String {
     })
 }
 
-pub(super) fn metres(value: Option<f64>) -> String {
+pub(crate) fn metres(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"))
 }
 
@@ -259,11 +259,11 @@ fn degrees(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.1}"))
 }
 
-pub(super) fn percent(value: Option<f64>) -> String {
+pub(crate) fn percent(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{:.1} %", value * 100.0))
 }
 
-fn signed_percent(value: Option<f64>) -> String {
+pub(crate) fn signed_percent(value: Option<f64>) -> String {
     value.map_or_else(
         || "-".to_owned(),
         |value| format!("{:+.1} %", value * 100.0),

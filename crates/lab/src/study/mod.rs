@@ -15,11 +15,12 @@ mod weights;
 mod tests;
 
 pub use focal::{FocalStudy, HEIGHT_ERRORS_M, Heat, PUBLISHED, Point, PublishedFocal};
-pub use paths::{FEW_METRES_M, PathFigures, PathStudy};
-pub use scene::{SceneError, Shape, StudyScene};
+pub use paths::{FEW_METRES_M, PathFigures, PathStudy, path_figures};
+pub use report::StudyReportError;
+pub use scene::{OpenedScene, SceneError, Shape, StudyScene};
 pub use seen::{BoxSource, SeenVehicle, seen_by_detector, seen_by_labels, study_filter};
 pub use trial::{MeasuredOn, TrialError};
-pub use vehicles::{VehicleFigures, VehicleStudy};
+pub use vehicles::{Group as VehicleGroup, VehicleStudy};
 pub use weights::{WeightPoint, WeightStudy, WeightValue};
 
 use trial::Bench;

@@ -3,7 +3,7 @@
 use super::seen::{SeenVehicle, study_filter};
 use crate::truth::{Truth, TruthError, TruthObject};
 use roadwatch_camera::{DatasetError, RigDataset};
-use roadwatch_core::{InvalidRig, Rig, RigCamera};
+use roadwatch_core::{Rig, RigCamera, rig::InvalidRig};
 use serde::Serialize;
 use std::{
     fmt,
@@ -191,11 +191,7 @@ impl StudyScene {
     }
 }
 
-fn shape(
-    folder: &Path,
-    objects: &[&TruthObject],
-    camera: &RigCamera,
-) -> Result<Shape, SceneError> {
+fn shape(folder: &Path, objects: &[&TruthObject], camera: &RigCamera) -> Result<Shape, SceneError> {
     let folder = || folder.to_owned();
     let Some(first) = objects.first() else {
         return Err(SceneError::Empty { folder: folder() });

@@ -8,8 +8,8 @@ use crate::{
 };
 use roadwatch_core::{Locator as _, Method, ObjectClass, RigCamera, rig::MeasuredFocal};
 use roadwatch_locate::{
-    CameraLocator, ClassSizes, GridSpec, HullSpec, LocationTable, LocatorError, LocatorOptions,
-    SizeGroup, build_table, table::TableBuildError,
+    CameraLocator, CarCategory, ClassSizes, GridSpec, HullSpec, LocationTable, LocatorError,
+    LocatorOptions, SizeGroup, SizeStatistic, build_table, table::TableBuildError,
 };
 use std::sync::Arc;
 
@@ -76,8 +76,8 @@ impl<'a> Bench<'a> {
             if method == Method::TriangleMeasuredF && self.measured.is_none() {
                 continue;
             }
-            let located = per_scene(Estimator::By(method), seen, |camera| {
-                self.by_default(camera, method)
+            let located = per_scene(Estimator::By(method), seen, |scene| {
+                self.by_default(&scene.camera, method)
             });
             samples.extend(located?);
         }
@@ -124,11 +124,9 @@ fn measured(scenes: &[StudyScene]) -> Option<MeasuredOn> {
 pub(super) fn default_table(camera: &RigCamera) -> Result<Arc<LocationTable>, TrialError> {
     let class = ObjectClass::new(TABLE_CLASS);
     let hull = HullSpec::for_class(&class);
-    let sizes = ClassSizes::default();
-    let size = sizes.get(&class).map(|car| car.size).unwrap_or_default();
     let group = SizeGroup {
         classes: vec![class],
-        size,
+        size: CarCategory::default().size(SizeStatistic::default()),
     };
     let grid = GridSpec::default();
     let table = build_table(camera, GROUND_Z_M, &grid, (group, &hull), |_| ())?;
@@ -139,14 +137,14 @@ pub(super) fn default_table(camera: &RigCamera) -> Result<Arc<LocationTable>, Tr
 pub(super) fn per_scene(
     who: Estimator,
     seen: &[SeenIn<'_>],
-    locator: impl Fn(&RigCamera) -> Result<CameraLocator, TrialError>,
+    locator: impl Fn(&StudyScene) -> Result<CameraLocator, TrialError>,
 ) -> Result<Vec<Sample>, TrialError> {
     let mut samples = Vec::with_capacity(seen.len());
     let mut last: Option<(&StudyScene, CameraLocator)> = None;
     for &(scene, vehicle) in seen {
         let current = match last.take() {
             Some((of, locator)) if std::ptr::eq(of, scene) => locator,
-            _ => locator(&scene.camera)?,
+            _ => locator(scene)?,
         };
         samples.push(judge(who, vehicle, &current));
         last = Some((scene, current));
@@ -157,7 +155,7 @@ pub(super) fn per_scene(
 /// Eq. 2 with a height of its own for each vehicle, and with F where one is given, otherwise `fy`.
 pub(super) fn by_height(
     seen: &[SeenIn<'_>],
-    focal_px: impl Fn(SeenIn<'_>) -> Option<f64>,
+    focal: Option<MeasuredFocal>,
     height_m: impl Fn(&SeenVehicle) -> Option<f64>,
 ) -> Result<Vec<Sample>, TrialError> {
     let mut samples = Vec::with_capacity(seen.len());
@@ -165,16 +163,12 @@ pub(super) fn by_height(
         let Some(height_m) = height_m(vehicle) else {
             continue;
         };
-        let measured_focal = focal_px((scene, vehicle)).map(|focal_px| MeasuredFocal {
-            focal_px,
-            image_height_px: scene.camera.model.size.height_px,
-        });
-        let method = match measured_focal {
+        let method = match focal {
             Some(_) => Method::TriangleMeasuredF,
             None => Method::TriangleFy,
         };
         let camera = RigCamera {
-            measured_focal,
+            measured_focal: focal,
             ..scene.camera.clone()
         };
         let options = LocatorOptions {

@@ -16,10 +16,6 @@ const APPROACHES: usize = 2;
 const LONGEST_STEP: f64 = 0.4;
 /// How far the start may be off, as a share of its distance: keeps places finite where the box says nothing.
 const START_STD: f64 = 1.0;
-/// Share of visible objects with something in front of their left or of their right end, and of their
-/// foot: in simulated traffic a tenth and a fiftieth of the boxes of cars at most 30 % hidden are cut so.
-const SIDE_HIDDEN: f64 = 0.1;
-const FOOT_HIDDEN: f64 = 0.02;
 /// At most this share of the box may be missing there: an object hidden more is seldom detected.
 const MOST_HIDDEN: f64 = 0.5;
 /// An edge that is this many standard deviations outside the outline is not hidden.
@@ -34,6 +30,26 @@ pub(super) struct View {
     pub(super) ground_z_m: f64,
     /// Its standard deviation under the camera, metres, and with each metre of distance.
     pub(super) ground_std: (f64, f64),
+    pub(super) hidden: HiddenShares,
+}
+
+/// How often something stands in front of an object's end or foot, as a share of all objects.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HiddenShares {
+    /// Of its left end, and again of its right end.
+    pub side: f64,
+    /// Of its foot.
+    pub foot: f64,
+}
+
+impl Default for HiddenShares {
+    /// In simulated traffic a tenth and a fiftieth of the boxes of cars at most 30 % hidden are cut so.
+    fn default() -> Self {
+        Self {
+            side: 0.1,
+            foot: 0.02,
+        }
+    }
 }
 
 /// A class's hull in every heading tried.
@@ -65,6 +81,7 @@ pub(super) struct Explanation {
 
 impl View {
     /// Of the ground's height under an object, metres.
+    #[inline(always)]
     pub(super) fn ground_std_m(&self, distance_m: f64) -> f64 {
         let (near, slope) = self.ground_std;
         (near * near + slope * slope * distance_m * distance_m).sqrt()
@@ -85,6 +102,7 @@ impl View {
 
     /// Fits a heading from `place` by one Gauss-Newton step; `None` where the hull comes behind the camera.
     /// `start` is where the object was sought first.
+    #[inline(always)]
     pub(super) fn fit(
         &self,
         shape: &Shape,
@@ -131,12 +149,14 @@ impl View {
             residual,
             precision,
             density: determinant.sqrt().recip(),
+            hidden: self.hidden,
             normal,
         })
     }
 
     /// Of the box's edges about the outline's, and what one deviation of the heading within its bin does to
     /// them.
+    #[inline(always)]
     fn covariance(
         &self,
         shape: &Shape,
@@ -171,18 +191,21 @@ pub(super) struct Fit {
     precision: Matrix4<f64>,
     /// Of the edges' Gaussian at its middle, without its powers of 2 pi.
     density: f64,
+    hidden: HiddenShares,
     normal: Normal,
 }
 
 impl Fit {
     /// The box as it is, and with its left, right or lower edge hidden.
+    #[inline(always)]
     pub(super) fn explanations(&self, seen: &SeenBox) -> impl Iterator<Item = Explanation> {
-        let visible = 1.0 - 2.0 * SIDE_HIDDEN - FOOT_HIDDEN;
+        let HiddenShares { side, foot } = self.hidden;
+        let visible = 1.0 - 2.0 * side - foot;
         let whole = self.explain(&self.normal, visible * self.density).0;
         let hidden = [
-            (LEFT, 1.0, SIDE_HIDDEN, seen.width()),
-            (RIGHT, -1.0, SIDE_HIDDEN, seen.width()),
-            (BOTTOM, -1.0, FOOT_HIDDEN, seen.height()),
+            (LEFT, 1.0, side, seen.width()),
+            (RIGHT, -1.0, side, seen.width()),
+            (BOTTOM, -1.0, foot, seen.height()),
         ];
         let hidden = hidden.into_iter().filter(|&(edge, ..)| !seen.cut[edge]);
         let hidden = hidden.filter_map(|(edge, inward, share, extent)| {
@@ -201,6 +224,7 @@ impl Fit {
     }
 
     /// The best place by these edges, and the step that leads there.
+    #[inline(always)]
     fn explain(&self, normal: &Normal, density: f64) -> (Explanation, Vector2<f64>) {
         let solved = normal.solve();
         let explanation = Explanation {

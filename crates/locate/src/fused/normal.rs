@@ -36,6 +36,7 @@ pub(super) struct Solved {
 impl Normal {
     /// From the precision of the edges; their slopes by the place, their residuals, and what a standard
     /// deviation of the turn does to them; and the place where the search began with its precision.
+    #[inline(always)]
     pub(super) fn new(
         precision: &Matrix4<f64>,
         (by_place, residual, turn): (&Matrix4x2<f64>, &Edges, &Edges),
@@ -61,6 +62,7 @@ impl Normal {
 
     /// Without an edge, whose own element of the precision is given: the others' marginal, a downdate of rank
     /// one.
+    #[inline(always)]
     pub(super) fn without(&self, edge: usize, own_precision: f64) -> Self {
         let (by, pulled, turned) = self.edges[edge];
         let share = own_precision.recip();
@@ -75,6 +77,7 @@ impl Normal {
         }
     }
 
+    #[inline(always)]
     pub(super) fn solve(&self) -> Solved {
         let [[a, b], [_, d]] = self.information.data.0;
         let determinant = (a * d - b * b).recip();
@@ -93,6 +96,7 @@ impl Normal {
 }
 
 /// Of a symmetric positive definite matrix, by blocks of two.
+#[inline(always)]
 pub(super) fn inverse_and_determinant(matrix: &Matrix4<f64>) -> (Matrix4<f64>, f64) {
     let block = |row: usize, column: usize| matrix.fixed_view::<2, 2>(row, column).into_owned();
     let (upper, beside, lower) = (block(0, 0), block(0, 2), block(2, 2));
@@ -113,6 +117,7 @@ pub(super) fn inverse_and_determinant(matrix: &Matrix4<f64>) -> (Matrix4<f64>, f
     (inverse, upper_determinant * rest_determinant)
 }
 
+#[inline(always)]
 fn inverse_of_two(matrix: &Matrix2<f64>) -> (Matrix2<f64>, f64) {
     let [[a, b], [c, d]] = matrix.data.0;
     let determinant = a * d - b * c;

@@ -78,6 +78,7 @@ impl Solid {
 
     /// How the outline's edges change, each a column: by one standard deviation of length, of width and of
     /// height, and by a radian of heading.
+    #[inline(always)]
     pub(super) fn shape_slopes(
         &self,
         outline: &Outline,
@@ -89,8 +90,7 @@ impl Solid {
             std_dev.width_m / self.size.width_m,
             std_dev.height_m / self.size.height_m,
         );
-        let mut slopes = [Edges::zeros(); SHAPE_CAUSES];
-        for edge in 0..EDGES {
+        let of_edge = |edge: usize| {
             let at = outline.points[edge];
             let (x, y, z) = (self.x[at], self.y[at], self.z[at]);
             let by = &outline.slopes[edge];
@@ -98,18 +98,22 @@ impl Solid {
             let left = by.y * cos - by.x * sin;
             // The corners' cuts go with the width (see `HullSpec::points`), which moves x a little too; what
             // that makes is far below the spread of a length.
-            slopes[0][edge] = ahead * x * length;
-            slopes[1][edge] = left * y * width;
-            slopes[2][edge] = by.z * z * height;
-            slopes[3][edge] = left * x - ahead * y;
-        }
-        slopes
+            [
+                ahead * x * length,
+                left * y * width,
+                by.z * z * height,
+                left * x - ahead * y,
+            ]
+        };
+        let by_edge: [_; EDGES] = std::array::from_fn(of_edge);
+        std::array::from_fn(|cause| Edges::from(by_edge.map(|causes| causes[cause])))
     }
 }
 
 impl Turned {
     /// The outline of the hull with its footprint's middle at `middle` in optical axes; `None` where part of
     /// it is behind the camera.
+    #[inline(always)]
     pub(super) fn outline(
         &self,
         middle: &Vector3<f64>,
@@ -159,7 +163,7 @@ fn extremes(turned: &Turned, middle: &Vector3<f64>) -> Option<([f32; EDGES], [us
     let points = [left_most, top_most, right_most, bottom_most].map(|key| (key & NUMBER) as usize);
     let position = |edge: usize| {
         let at = points[edge];
-        let across = if edge % 2 == 0 {
+        let across = if edge.is_multiple_of(2) {
             xs[at] + right
         } else {
             ys[at] + down

@@ -74,7 +74,7 @@ pub fn run(args: &EvaluateArgs) -> Result<(), Failure> {
 }
 
 /// Runs the pipeline over everything; keeps what it perceives, and how long that took.
-fn perceive(
+pub(super) fn perceive(
     session: Session,
     mut progress: Progress,
 ) -> Result<(Vec<Recorded>, LatencyMs), Failure> {

@@ -9,4 +9,5 @@ mod output;
 mod progress;
 pub mod run;
 mod scoring;
+pub mod study;
 pub mod table;

@@ -1,50 +1,18 @@
 //! `[rig]` and `[[camera]]`: which cameras there are, how they see, where they sit, what feeds them.
 
-use super::{camera_info, reader::Reader};
-use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
-use roadwatch_camera::{FrameRate, RigDataset};
-use roadwatch_core::{
-    CameraModel, CameraName, Distortion, ImageSize, Intrinsics, MeasuredFocal, Method, Rig,
-    RigCamera, Timestamp, error_chain, space::Transform,
+use super::{
+    camera_info, camera_lens, camera_mount, camera_source, camera_source::SourceConfig,
+    reader::Reader,
 };
+use roadwatch_camera::RigDataset;
+use roadwatch_core::{CameraName, Method, Rig, RigCamera, error_chain};
 use roadwatch_lab::DatasetFormat;
 use std::{path::PathBuf, sync::Arc};
 
-/// How far a quaternion's length may be from 1: what printing it with four digits costs.
-const UNIT_TOLERANCE: f64 = 1e-3;
-/// What a `camera_info` says instead.
-const LENS_KEYS: [&str; 6] = ["fx", "fy", "cx", "cy", "distortion_model", "distortion"];
-const LARGEST_SIDE_PX: u32 = 16_384;
-/// Beyond this a focal length is a slip of units, pixels.
-const LONGEST_FOCAL_PX: f64 = 1e6;
-/// Beyond this a mount is a slip of units, metres.
+/// Beyond this a height is a slip of units, metres.
 const FARTHEST_M: f64 = 1e4;
-
 /// Key of cameras that no table of their own configures.
 const DATASET_KEY: &str = "rig.dataset";
-
-/// What feeds a camera.
-#[derive(Debug, Clone, PartialEq)]
-pub enum SourceConfig {
-    /// The camera of this index in the rig dataset.
-    Dataset(usize),
-    /// A folder of images.
-    Images {
-        /// The folder.
-        folder: PathBuf,
-        /// Frames per second.
-        rate: FrameRate,
-        /// Stamp of the first; `None` for the rig's own beginning.
-        start: Option<Timestamp>,
-    },
-    /// A video file.
-    Video {
-        /// The file.
-        file: PathBuf,
-        /// Stamp of the first frame; `None` for the rig's own beginning.
-        start: Option<Timestamp>,
-    },
-}
 
 /// What is configured for one camera beside its place in the [`Rig`].
 #[derive(Debug, Clone, PartialEq)]
@@ -194,7 +162,7 @@ fn read_table(
         None if is_whole => cameras.extend(read_camera(table, name)),
         None => {
             read_config(table, SourceConfig::Dataset(0));
-            measured_focal(table, 1);
+            camera_lens::read_measured_focal(table, 1);
             camera_info::read(table, None);
             if matches!(head.dataset, DatasetState::Open(_)) && !head.overridden {
                 table.note("name", "the dataset has no camera of this name");
@@ -218,7 +186,7 @@ fn from_dataset(dataset: &RigDataset) -> Vec<(RigCamera, CameraConfig)> {
 
 /// What a `[[camera]]` table adds to a camera of the dataset.
 fn adjust(table: &Reader<'_, '_>, camera: &mut RigCamera, config: &mut CameraConfig) {
-    camera.measured_focal = measured_focal(table, camera.model.size.height_px);
+    camera.measured_focal = camera_lens::read_measured_focal(table, camera.model.size.height_px);
     if let Some(model) = camera_info::read(table, Some(camera.model.size)) {
         camera.model = model;
     }
@@ -239,156 +207,17 @@ fn read_camera(
     table: &Reader<'_, '_>,
     name: Option<CameraName>,
 ) -> Option<(RigCamera, CameraConfig)> {
-    let model = read_model(table);
-    let position = table.numbers::<3>("position_m");
-    let orientation = read_orientation(table);
-    if !table.has("position_m") {
-        table.note(
-            "position_m",
-            "missing: the camera's place in base_link, [x, y, z] in metres",
-        );
-    }
-    let source = read_source(table);
-    let focal = measured_focal(table, model.map_or(1, |model| model.size.height_px));
+    let model = camera_lens::read(table);
+    let mount = camera_mount::read(table);
+    let source = camera_source::read(table);
+    let height_px = model.map_or(1, |model| model.size.height_px);
+    let measured_focal = camera_lens::read_measured_focal(table, height_px);
     let config = source.map(|source| read_config(table, source));
-    let (model, [x, y, z]) = (model?, position?);
     let camera = RigCamera {
         name: name?,
-        model,
-        base_from_optical: Transform::new(Isometry3::from_parts(
-            Translation3::new(x, y, z),
-            orientation?,
-        )),
-        measured_focal: focal,
+        model: model?,
+        base_from_optical: mount?,
+        measured_focal,
     };
     Some((camera, config?))
-}
-
-/// From `camera_info`, or from keys of its own.
-fn read_model(table: &Reader<'_, '_>) -> Option<CameraModel> {
-    if !table.has(camera_info::KEY) {
-        return read_lens(table);
-    }
-    let side = |key| table.integer(key, 1..=LARGEST_SIDE_PX);
-    let given = side("width").zip(side("height"));
-    let expected = given.map(|(width_px, height_px)| ImageSize {
-        width_px,
-        height_px,
-    });
-    for key in LENS_KEYS.into_iter().filter(|key| table.has(key)) {
-        table.note(key, "is in the camera_info already: name the lens once");
-        table.mark_read(key);
-    }
-    camera_info::read(table, expected)
-}
-
-fn read_lens(table: &Reader<'_, '_>) -> Option<CameraModel> {
-    let width_px = table.required_integer("width", 1..=LARGEST_SIDE_PX);
-    let height_px = table.required_integer("height", 1..=LARGEST_SIDE_PX);
-    let focal = |key| table.required_number(key, 1.0..=LONGEST_FOCAL_PX);
-    let center = |key| table.required_number(key, -LONGEST_FOCAL_PX..=LONGEST_FOCAL_PX);
-    let (fx, fy, cx, cy) = (focal("fx"), focal("fy"), center("cx"), center("cy"));
-    let coefficients = table.number_list("distortion").unwrap_or_default();
-    if table.has("distortion") && !table.has("distortion_model") {
-        table.note(
-            "distortion",
-            "needs a distortion_model, such as \"plumb_bob\"",
-        );
-    }
-    let lens = Distortion::from_ros(
-        table.text("distortion_model").unwrap_or("none"),
-        &coefficients,
-    );
-    let distortion = lens
-        .map_err(|error| table.note("distortion_model", error.to_string()))
-        .ok();
-    Some(CameraModel {
-        size: ImageSize {
-            width_px: width_px?,
-            height_px: height_px?,
-        },
-        intrinsics: Intrinsics {
-            fx: fx?,
-            fy: fy?,
-            cx: cx?,
-            cy: cy?,
-        },
-        distortion: distortion?,
-    })
-}
-
-fn read_orientation(table: &Reader<'_, '_>) -> Option<UnitQuaternion<f64>> {
-    const KEY: &str = "orientation_wxyz";
-    if !table.has(KEY) {
-        table.note(
-            KEY,
-            "missing: the quaternion [w, x, y, z] that turns optical axes into base_link's",
-        );
-    }
-    let [w, x, y, z] = table.numbers::<4>(KEY)?;
-    let quaternion = Quaternion::new(w, x, y, z);
-    if (quaternion.norm() - 1.0).abs() > UNIT_TOLERANCE {
-        table.note(
-            KEY,
-            format!("a rotation has length 1; this has {:.4}", quaternion.norm()),
-        );
-        return None;
-    }
-    Some(UnitQuaternion::from_quaternion(quaternion))
-}
-
-fn measured_focal(table: &Reader<'_, '_>, camera_height_px: u32) -> Option<MeasuredFocal> {
-    let focal = table.number("measured_focal_px", 1.0..=LONGEST_FOCAL_PX);
-    let height = table.integer("measured_focal_image_height_px", 1..=LARGEST_SIDE_PX);
-    if height.is_some() && !table.has("measured_focal_px") {
-        table.note("measured_focal_image_height_px", "needs measured_focal_px");
-    }
-    Some(MeasuredFocal {
-        focal_px: focal?,
-        image_height_px: height.unwrap_or(camera_height_px),
-    })
-}
-
-fn read_source(table: &Reader<'_, '_>) -> Option<SourceConfig> {
-    let start = match table.text("start_stamp") {
-        None => None,
-        Some(text) => match text.parse() {
-            Ok(start) => Some(start),
-            Err(error) => {
-                table.note("start_stamp", format!("{error}"));
-                return None;
-            }
-        },
-    };
-    let rate_hz = table.number("rate_hz", 0.001..=1000.0);
-    match (table.path("images"), table.path("video")) {
-        (Some(folder), None) => {
-            let Some(rate) = rate_hz.and_then(FrameRate::from_hz) else {
-                table.note("rate_hz", "missing: frames per second of the images");
-                return None;
-            };
-            Some(SourceConfig::Images {
-                folder,
-                rate,
-                start,
-            })
-        }
-        (None, Some(file)) => {
-            if rate_hz.is_some() {
-                table.note("rate_hz", "is for images; a video has its own");
-            }
-            Some(SourceConfig::Video { file, start })
-        }
-        (Some(_), Some(_)) => {
-            table.note("video", "a camera has one source: `images` or `video`");
-            None
-        }
-        (None, None) => {
-            table.note(
-                "images",
-                "missing: name a folder of `images` or a `video` file",
-            );
-            None
-        }
-    }
 }

@@ -3,9 +3,9 @@
 use super::{cameras::CameraConfig, reader::Reader};
 use roadwatch_core::{Locator, Method, ObjectClass, Rig, RigCamera, SizeLwh};
 use roadwatch_locate::{
-    BoxNoise, CameraLocator, CarCategory, ClassSize, ClassSizes, GridSpec, HoldOptions, HullSpec,
-    LocationTable, LocatorError, LocatorOptions, QueryDistance, SizeGroup, SizeStatistic,
-    SplitMode, Standing, TableOptions, Weight, build_table,
+    BoxNoise, CameraLocator, CarCategory, ClassSize, ClassSizes, GridSpec, HiddenShares,
+    HoldOptions, HullSpec, LocationTable, LocatorError, LocatorOptions, MountNoise, QueryDistance,
+    SizeGroup, SizeStatistic, SplitMode, Standing, TableOptions, Weight, build_table,
 };
 use std::{sync::Arc, time::Duration};
 
@@ -109,6 +109,12 @@ pub(super) fn read(locate: &Reader<'_, '_>) -> LocateConfig {
     let noise = locate.table("box_noise");
     options.box_noise = box_noise(&noise);
     noise.finish();
+    let ground = locate.table("ground");
+    options.mount_noise = mount_noise(&ground);
+    ground.finish();
+    let hidden = locate.table("hidden");
+    options.hidden = hidden_shares(&hidden);
+    hidden.finish();
     let table = locate.table("table");
     options.table_options = table_options(&table);
     let grid = grid(&table);
@@ -196,6 +202,27 @@ fn box_noise(table: &Reader<'_, '_>) -> BoxNoise {
         edge_share_of_height: table
             .number("edge_share_of_height", 0.0..=1.0)
             .unwrap_or(defaults.edge_share_of_height),
+    }
+}
+
+fn mount_noise(table: &Reader<'_, '_>) -> MountNoise {
+    let defaults = MountNoise::default();
+    MountNoise {
+        pitch_rad: table
+            .number("slope_std_dev_deg", 0.0..=45.0)
+            .map_or(defaults.pitch_rad, f64::to_radians),
+        ground_m: table
+            .number("height_std_dev_m", 0.0..=10.0)
+            .unwrap_or(defaults.ground_m),
+    }
+}
+
+fn hidden_shares(table: &Reader<'_, '_>) -> HiddenShares {
+    let defaults = HiddenShares::default();
+    let share = |key, default| table.number(key, 0.0..=0.4).unwrap_or(default);
+    HiddenShares {
+        side: share("side_share", defaults.side),
+        foot: share("foot_share", defaults.foot),
     }
 }
 

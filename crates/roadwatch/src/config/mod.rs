@@ -1,6 +1,9 @@
 //! Configuration: what the user typed, checked whole, as what it means.
 
 mod camera_info;
+mod camera_lens;
+mod camera_mount;
+pub mod camera_source;
 pub mod cameras;
 pub mod detector;
 mod environment;
@@ -11,7 +14,8 @@ mod notes;
 mod reader;
 mod values;
 
-pub use cameras::{CameraConfig, DatasetChoice, RigConfig, SourceConfig};
+pub use camera_source::SourceConfig;
+pub use cameras::{CameraConfig, DatasetChoice, RigConfig};
 pub use detector::DetectorConfig;
 pub use environment::Environment;
 pub use locate::LocateConfig;

@@ -107,6 +107,17 @@ pub(crate) fn stdout(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
+/// What the program says on standard error when it refuses these arguments, as it must.
+pub(crate) fn refusal(arguments: &[&str]) -> String {
+    let output = run(arguments);
+    let text = stderr(&output);
+    assert!(
+        !output.status.success() && !text.contains("panicked"),
+        "{text}"
+    );
+    text
+}
+
 /// Runs the daemon to its end and expects it to succeed.
 pub(crate) fn run_well(arguments: &[&str]) -> Output {
     let output = run(arguments);

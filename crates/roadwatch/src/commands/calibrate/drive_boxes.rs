@@ -2,19 +2,18 @@
 
 use crate::{
     cli::{BoxesFrom, CalibrateMountArgs},
-    commands::progress::Progress,
+    commands::{evaluate::perceive, progress::Progress},
     config::{Config, Environment, Mistakes},
     failure::Failure,
-    session::{Session, watch},
+    session::Session,
 };
 use anyhow::{Context as _, anyhow};
 use roadwatch_calibrate::{SeenBox, Sightings};
 use roadwatch_camera::{Pace, PlaybackOptions, Recording as _, Repeat, RigDataset};
 use roadwatch_core::{BoxPx, CameraId, ObjectClass, Pixels, RigCamera, SizeLwh};
-use roadwatch_lab::{Recorder, Truth, TruthObject};
+use roadwatch_lab::{Truth, TruthObject};
 use roadwatch_locate::{BoxNoise, ClassSize, ClassSizes};
-use roadwatch_pipeline::{NamedSink, Overload, PipelineOptions, Running};
-use std::{path::Path, sync::Arc, time::Duration};
+use std::{path::Path, sync::Arc};
 
 /// Lower boxes are mostly noise, pixels.
 const MIN_HEIGHT_PX: f32 = 20.0;
@@ -22,7 +21,6 @@ const MIN_HEIGHT_PX: f32 = 20.0;
 const MAX_OCCLUDED: f64 = 0.05;
 /// A labelled size is exact, but a hull stands for a body only so well, as a share.
 const SHAPE_SPREAD: f64 = 0.03;
-const PROGRESS_PERIOD: Duration = Duration::from_millis(200);
 
 /// Every camera's boxes.
 pub(super) struct DriveBoxes {
@@ -149,23 +147,10 @@ fn detected(
         .and_then(|rig| rig.dataset.clone());
     let frames = dataset.map_or(0, |dataset| dataset.frames().len() as u64);
     let per_camera = args.frames.map_or(frames, |limit| limit.min(frames));
-    let mut progress = Progress::new(per_camera * rig.cameras().len() as u64, "images");
-    let recorder = Recorder::default();
-    let sink = NamedSink {
-        name: "recorder".to_owned(),
-        sink: Box::new(recorder.clone()),
-    };
-    let running = session.start(vec![sink], PipelineOptions::new(Overload::Wait))?;
-    let report = |running: &Running| {
-        let published = rig
-            .ids()
-            .map(|camera| running.metrics().camera(camera).published);
-        progress.set(published.sum());
-    };
-    watch(&running, PROGRESS_PERIOD, || false, report)?;
-    progress.finish();
+    let progress = Progress::new(per_camera * rig.cameras().len() as u64, "images");
+    let (perceived, _) = perceive(session, progress)?;
     let mut all = vec![Frames::new(); rig.cameras().len()];
-    for recorded in recorder.take() {
+    for recorded in perceived {
         let boxes = recorded.detections();
         let boxes = boxes.filter_map(|detection| {
             let size = wanted_size(args, &detection.class, &sizes)?;
