@@ -6,7 +6,7 @@ use roadwatch_camera::read_rig_file;
 use roadwatch_core::Mount;
 use serde_json::Value;
 use std::{fmt::Write as _, fs, os::unix::fs::symlink, path::Path};
-use support::{root, run, run_well, stderr, stdout, write};
+use support::{root, run_well, stdout, write};
 
 /// What the rig of the drive is set wrong by.
 const PITCH_OFF_DEG: f64 = 1.5;

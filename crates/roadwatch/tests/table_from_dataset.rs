@@ -3,7 +3,7 @@
 mod support;
 
 use std::{fs, path::Path};
-use support::{run, run_well, stderr, stdout};
+use support::{run_well, stdout};
 
 const RIG: &str = r#"
 [[camera]]

@@ -210,7 +210,10 @@ fn datasets_that_no_study_fits_are_refused_with_what_to_do() {
     let two = y_path();
     fs::write(two.path().join("rig.toml"), rig(&["camera", "other"])).expect("written");
     fs::create_dir(two.path().join("other")).expect("a folder");
-    assert!(refusal(two.path()).contains("2 cameras"));
+    let frame = r#"{"frame": 0, "stamp": {"camera": 1.5, "other": 1.5}}"#;
+    fs::write(two.path().join("frames.jsonl"), frame).expect("written");
+    let said = refusal(two.path());
+    assert!(said.contains("2 cameras"), "{said}");
     let nowhere = short.path().join("nowhere");
     assert!(refusal(&nowhere).contains("is no rig dataset"));
 }
