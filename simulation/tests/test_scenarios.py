@@ -128,3 +128,21 @@ def test_unknown_scenarios_and_empty_ones_are_refused():
     with pytest.raises(SimulationError, match="at least 1 frame"):
         build_scenario("grid", 0, 0)
     assert set(SCENARIOS) >= {"paper_x_path", "paper_y_path", "turntable", "grid", "traffic", "training"}
+
+
+def test_the_long_path_runs_from_6_to_60_m_ahead():
+    scene = build_scenario("long_path", 0, 10)
+    assert poses(scene, 0)[0, :2, 3] == pytest.approx([6.0, 0.0])
+    assert poses(scene, 9)[0, :2, 3] == pytest.approx([60.0, 0.0])
+
+
+def test_every_kind_of_vehicle_is_shown_and_none_stands_before_another():
+    scene = build_scenario("vehicles", 1, 8)
+    shown = [[thing.footprint(scene.time_s(frame)) for thing in scene.objects] for frame in range(8)]
+    in_view = [[index for index, at in enumerate(frame) if at.x_m > 0.0] for frame in shown]
+    assert {index for frame in in_view for index in frame} == set(range(len(scene.objects)))
+    for frame, visible in zip(shown, in_view, strict=True):
+        angles = sorted((angles.min(), angles.max()) for angles in
+            (np.arctan2(*frame[index].corners().T[::-1]) for index in visible))
+        assert all(before[1] < after[0] for before, after in zip(angles, angles[1:], strict=False))
+        assert -0.602 < angles[0][0] and angles[-1][1] < 0.602

@@ -92,8 +92,8 @@ impl Report {
         std::iter::once((Estimator::Published, &self.published)).chain(methods)
     }
 
-    /// Whose headings stand for the evaluation: those that were published, or those that the fused method's boxes
-    /// allow where none was; `None` when nobody says anything of headings.
+    /// Whose headings stand for the evaluation: what was published, or the fused method's where that says nothing
+    /// of headings; `None` when nobody does.
     fn heading(&self) -> Option<(Estimator, &HeadingScore)> {
         let candidates = [Estimator::Published, Estimator::By(Method::Fused)];
         let mut said = candidates.into_iter().filter_map(|estimator| {

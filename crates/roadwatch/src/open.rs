@@ -65,7 +65,7 @@ pub fn locators(config: &Config, notes: &mut Notes) -> Option<Vec<Box<dyn Locato
     let pairs = rig.rig.cameras().iter().zip(&rig.cameras);
     let built: Vec<Option<Box<dyn Locator>>> = pairs
         .map(|(camera, camera_config)| {
-            let method = camera_config.method.unwrap_or(config.locate.method);
+            let method = camera_config.method_or(config.locate.method);
             match config
                 .locate
                 .locator(&rig.rig, camera, camera_config, method)

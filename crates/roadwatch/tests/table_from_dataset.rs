@@ -3,7 +3,7 @@
 mod support;
 
 use std::{fs, path::Path};
-use support::{run_well, stdout};
+use support::{run_well, stderr, stdout};
 
 const RIG: &str = r#"
 [[camera]]

@@ -122,7 +122,8 @@ pub(super) fn banded<'a>(
 
 /// A number without the digits that the arithmetic added.
 fn short(number: &f64) -> String {
-    format!("{}", (number * 1e3).round() / 1e3)
+    // Adding zero makes 0 of -0.
+    format!("{}", (number * 1e3).round() / 1e3 + 0.0)
 }
 
 /// The legend of series that were labelled.

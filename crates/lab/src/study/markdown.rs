@@ -1,7 +1,8 @@
 //! `study.md`.
 
 use super::{
-    FocalStudy, HEIGHT_ERRORS_M, PathFigures, Point, Study, VehicleGroup, WeightStudy, WeightValue,
+    FocalStudy, HEIGHT_ERRORS_M, PathFigures, PathStudy, Point, Study, VehicleGroup, WeightStudy,
+    WeightValue, path_figures,
 };
 use crate::report::markdown::{metres, percent, row, signed_percent};
 use std::fmt::Write as _;
@@ -13,6 +14,9 @@ impl Study {
         let mut text = self.opening();
         for (name, figures) in self.path_groups() {
             text.push_str(&path_table(name, &figures));
+        }
+        if !self.paths.is_empty() {
+            text.push_str(&drive_table(&self.paths));
         }
         if let Some(focal) = &self.focal {
             text.push_str(&focal_tables(focal));
@@ -68,6 +72,32 @@ fn path_table(path: &str, figures: &[(&'static str, PathFigures)]) -> String {
             metres(figures.location.p50_m),
             metres(figures.location.p90_m),
         ]));
+    }
+    text
+}
+
+/// Every drive by itself, one line each.
+fn drive_table(drives: &[PathStudy]) -> String {
+    let names: Vec<_> = path_figures(drives.iter())
+        .into_iter()
+        .map(|(name, _)| name)
+        .collect();
+    let mut text = format!(
+        "\n## Paths, drive by drive: covered, and major errors below 25 m\n\n| drive | {} |\n|---|{}\n",
+        names.join(" | "),
+        "---|".repeat(names.len())
+    );
+    for drive in drives {
+        let found = path_figures(std::iter::once(drive));
+        let cells = names.iter().map(|wanted| {
+            let found = found.iter().find(|(name, _)| name == wanted);
+            found.map_or_else(String::new, |(_, found)| {
+                let covered = percent(found.coverage_90);
+                format!("{covered}, {} of {}", found.major_errors_near, found.near)
+            })
+        });
+        let name = format!("{}, {}", drive.shape, drive.vehicle);
+        text.push_str(&row(std::iter::once(name).chain(cells)));
     }
     text
 }
@@ -134,12 +164,12 @@ fn weight_table(weights: &WeightStudy) -> String {
 fn vehicle_table(group: &VehicleGroup) -> String {
     let mut text = format!(
         "\n## Random headings: {}, {} boxes\n\nBest constant height of eq. 2: {:.2} m, mean relative error {}. \
-         The fused method's is {} smaller.\n\n| method | n | mean rel. error | bias | covered | location p50 m | p90 m |\n|---|---|---|---|---|---|---|\n",
+         The fused method's, against it: {}.\n\n| method | n | mean rel. error | bias | covered | location p50 m | p90 m |\n|---|---|---|---|---|---|---|\n",
         group.name,
         group.n,
         group.best_height_m,
         percent(group.best.mean_relative_error),
-        percent(group.fused_gain),
+        signed_percent(group.fused_gain.map(|gain| -gain)),
     );
     for (name, figures) in &group.methods {
         text.push_str(&row([

@@ -84,6 +84,11 @@ impl Study {
                 let figures = figures.into_iter();
                 (name, object(figures.map(|(method, figures)| (method, json!(figures)))))
             })),
+            "drives": self.paths.iter().map(|drive| {
+                let figures = path_figures(std::iter::once(drive)).into_iter();
+                let figures = figures.map(|(method, figures)| (method, json!(figures)));
+                json!({"shape": drive.shape, "vehicle": drive.vehicle, "methods": object(figures)})
+            }).collect::<Vec<_>>(),
             "focal": self.focal.as_ref().map(focal_json),
             "table_weight": self.weights.as_ref().map(|weights| json!({
                 "fitted": weights.fitted,

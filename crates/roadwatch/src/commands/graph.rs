@@ -21,7 +21,7 @@ pub fn run(args: &ConfigArgs) -> Result<(), Failure> {
         .iter()
         .zip(config.rig.iter().flat_map(|rig| &rig.cameras))
     {
-        let method = camera_config.method.unwrap_or(config.locate.method);
+        let method = camera_config.method_or(config.locate.method);
         say!(
             "camera {:<14} {}  located by {method}",
             camera.name.as_str(),

@@ -27,6 +27,16 @@ pub struct CameraConfig {
     pub key: String,
 }
 
+impl CameraConfig {
+    /// How its objects are located, where the rig's cameras use `general`: a camera that names a table and no
+    /// method asks that table.
+    #[must_use]
+    pub fn method_or(&self, general: Method) -> Method {
+        let by_table = self.table.as_ref().map(|_| Method::Table);
+        self.method.or(by_table).unwrap_or(general)
+    }
+}
+
 /// The rig, and one [`CameraConfig`] per camera of it.
 #[derive(Debug, Clone)]
 pub struct RigConfig {
