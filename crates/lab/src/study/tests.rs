@@ -31,8 +31,11 @@ fn plate(id: &str, (x, y): (f64, f64)) -> serde_json::Value {
     })
 }
 
+/// Vehicles of a frame: id, and place as `(ahead, left)` of the camera.
+type Frame = Vec<(&'static str, (f64, f64))>;
+
 /// A dataset with these vehicles in each frame.
-fn dataset(frames: &[Vec<(&str, (f64, f64))>]) -> TempDir {
+fn dataset(frames: &[Frame]) -> TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     let write = |name: &str, text: String| fs::write(folder.path().join(name), text).expect(name);
     write("rig.toml", rig(&["camera"]));
@@ -48,7 +51,7 @@ fn dataset(frames: &[Vec<(&str, (f64, f64))>]) -> TempDir {
         "frames.jsonl",
         numbered().map(|(at, _)| stamp(at)).collect(),
     );
-    let line = |(at, seen): (usize, &Vec<(&str, (f64, f64))>)| {
+    let line = |(at, seen): (usize, &Frame)| {
         let objects: Vec<_> = seen.iter().map(|(id, place)| plate(id, *place)).collect();
         let line = json!({"frame": at, "camera": "camera", "objects": objects});
         format!("{line}\n")

@@ -30,7 +30,13 @@ pub struct StudyArgs {
     #[arg(required = true, value_name = "DATA")]
     pub data: Vec<PathBuf>,
     /// Folder for study.json, study.md and the plots; made if need be.
-    #[arg(short = 'o', long, value_name = "DIR", default_value = "study")]
+    #[arg(
+        short = 'o',
+        long,
+        value_name = "DIR",
+        default_value = "study",
+        overrides_with = "report"
+    )]
     pub report: PathBuf,
     /// Whose boxes are located.
     #[arg(long, value_enum, default_value_t = StudyBoxes::Truth)]

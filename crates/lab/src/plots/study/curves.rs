@@ -16,6 +16,9 @@ const COVERAGE: RGBColor = RGBColor(213, 94, 0);
 const TOP_PERCENT: f64 = 103.0;
 const LINE_PX: u32 = 3;
 
+/// A line of a panel: its name, its colour and what it shows.
+type Line = (&'static str, RGBColor, fn(&Point) -> Option<f64>);
+
 struct Panel<'a> {
     title: &'static str,
     x_label: &'static str,
@@ -77,7 +80,7 @@ fn draw(area: &Area<'_>, panel: &Panel<'_>) -> Drawn {
         let upright = [(at, 0.0), (at, TOP_PERCENT)];
         chart.draw_series(LineSeries::new(upright, REFERENCE.stroke_width(1)))?;
     }
-    let lines: [(&str, RGBColor, fn(&Point) -> Option<f64>); 2] = [
+    let lines: [Line; 2] = [
         ("accuracy", ACCURACY, |point| point.accuracy),
         ("coverage", COVERAGE, |point| point.coverage_90),
     ];
