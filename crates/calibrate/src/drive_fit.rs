@@ -24,6 +24,8 @@ const STEPS: [f64; 3] = [1e-4, 1e-4, 1e-4];
 const ROUNDS: usize = 4;
 /// A box that the mount puts above the horizon costs what four deviations do.
 const LOST_COST: f64 = 4.0;
+/// Sizes that are said to be exact still spread a little: a share of the height.
+const LEAST_SPREAD: f64 = 1e-3;
 
 /// Parameters are: pitch by which the mount is moved, logarithm of the scale, and roll where it is free.
 pub(crate) struct Fit<'a> {
@@ -197,7 +199,7 @@ impl<'a> Fit<'a> {
             normal.cost += LOST_COST * (boxes.len() - residuals.len()) as f64;
             first += boxes.len();
             let size = &boxes[0].seen.size;
-            let spread = size.std_dev.height_m / size.size.height_m;
+            let spread = (size.std_dev.height_m / size.size.height_m).max(LEAST_SPREAD);
             Track::new(&residuals, spread).add_to(&mut normal);
         }
         Some(normal)

@@ -22,6 +22,8 @@ const PITCH_LIMIT_RAD: f64 = 0.026;
 const SCALE_LIMIT: f64 = 0.15;
 /// Median disagreements of distances: as little as noise makes, and more than sizes within a class explain.
 const FINE_DISAGREEMENT: f64 = 0.03;
+/// The fit weighs objects and the disagreement counts boxes: this much worse is no worse.
+const WORSENED: f64 = 1.25;
 const WORST_DISAGREEMENT: f64 = 0.2;
 
 /// What is believed, where boxes tell only the ratio of the two.
@@ -131,7 +133,7 @@ pub fn mount_from_drive(
     }
     let result = fit.result(&found.at, &std);
     let [before, after] = result.disagreement;
-    if after > before.max(FINE_DISAGREEMENT) || after > WORST_DISAGREEMENT {
+    if after > WORSENED * before.max(FINE_DISAGREEMENT) || after > WORST_DISAGREEMENT {
         let percent = (100.0 * after).round() as u32;
         return Err(DriveError::Disagreement { percent });
     }

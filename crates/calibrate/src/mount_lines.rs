@@ -135,7 +135,8 @@ pub fn mount_from_lines(
     let (begun, found) = found.ok_or(LinesError::Undetermined)?;
     let mut mount = Free::moved(&FREE, &begun, &found.at);
     let residuals_px = residuals(&mount).ok_or(LinesError::Undetermined)?;
-    let left_over = (2 * segments.len()).saturating_sub(2).max(1) as f64;
+    // A segment's two ends mirror each other about its middle, so that it is one observation.
+    let left_over = segments.len().saturating_sub(2).max(1) as f64;
     let noise_px = (2.0 * found.normal.cost / left_over)
         .sqrt()
         .max(LEAST_NOISE_PX);

@@ -121,7 +121,9 @@ impl Evaluation<'_> {
         self.rig.ids().flat_map(move |camera| {
             let frames = self.dataset.frames().iter();
             let captured = frames.filter_map(move |frame| {
-                Some((camera, frame.stamps[camera.index()]?, frame.number))
+                // Cameras beyond the dataset's are the configuration's own: nothing of theirs is labelled.
+                let stamp = (*frame.stamps.get(camera.index())?)?;
+                Some((camera, stamp, frame.number))
             });
             captured.take(limit)
         })

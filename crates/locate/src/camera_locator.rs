@@ -221,7 +221,9 @@ impl CameraLocator {
 
 impl Locator for CameraLocator {
     fn locate(&self, detection: &Detection, prior: Option<&Prior>) -> Option<Location> {
-        let heading = prior.and_then(|prior| prior.heading.as_ref());
+        // What is too old to be held is too old to be believed.
+        let recent = prior.filter(|prior| prior.age < self.hold.max_age);
+        let heading = recent.and_then(|prior| prior.heading.as_ref());
         let measured = self.measure(detection, heading);
         measured.or_else(|| self.hold.keep(prior?))
     }

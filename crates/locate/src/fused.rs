@@ -138,7 +138,8 @@ impl FusedLocator {
         let by_width = size.length_m.max(size.width_m) / seen.width();
         let level = ray.xy();
         let least_m = size.length_m / 2.0 + 1.0;
-        let distance_m = (by_height.min(by_width) * level.norm()).clamp(least_m, self.max_range_m);
+        let said_m = by_height.min(by_width) * level.norm();
+        let distance_m = said_m.min(self.max_range_m).max(least_m);
         Some(self.view.eye.xy() + level.try_normalize(f64::EPSILON)? * distance_m)
     }
 }
@@ -176,7 +177,10 @@ fn expected(found: Explanation, prior: Option<&Heading>) -> Explanation {
     };
     let yaw_rad = yaw_of(found.heading) + found.turn_rad;
     let apart = wrapped(yaw_rad - prior.yaw_rad, PI);
-    let std_rad = prior.std_dev_rad.hypot(found.turn_std_rad);
+    let std_rad = prior
+        .std_dev_rad
+        .hypot(found.turn_std_rad)
+        .max(f64::EPSILON);
     let likelihood = (-0.5 * (apart / std_rad).powi(2)).exp() * PI / ((2.0 * PI).sqrt() * std_rad);
     Explanation {
         scale: found.scale * ((1.0 - PRIOR_FAILS) * likelihood + PRIOR_FAILS),

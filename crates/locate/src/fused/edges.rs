@@ -36,13 +36,18 @@ impl SeenBox {
     pub(super) fn new(model: &CameraModel, box_px: &BoxPx, noise: &BoxNoise) -> Option<Self> {
         let middle = box_px.center();
         let edge = |position: f32| f64::from(position) - 0.5;
-        let left = model.ray(Pixel::new(edge(box_px.x_min), middle.y))?;
-        let top = model.ray(Pixel::new(middle.x, edge(box_px.y_min)))?;
-        let right = model.ray(Pixel::new(edge(box_px.x_max), middle.y))?;
-        let bottom = model.ray(Pixel::new(middle.x, edge(box_px.y_max)))?;
         let std_px = noise.edge_std_px(box_px);
-        let across = std_px / model.intrinsics.fx;
-        let down = std_px / model.intrinsics.fy;
+        // Position and deviation on the plane; a pixel is worth more of it where the lens squeezes the image.
+        let on_plane = |pixel: Pixel, axis: usize| {
+            let mut beside = pixel;
+            beside[axis] += 1.0;
+            let here = model.ray(pixel)?[axis];
+            Some((here, std_px * (model.ray(beside)?[axis] - here).abs()))
+        };
+        let (left, left_std) = on_plane(Pixel::new(edge(box_px.x_min), middle.y), 0)?;
+        let (top, top_std) = on_plane(Pixel::new(middle.x, edge(box_px.y_min)), 1)?;
+        let (right, right_std) = on_plane(Pixel::new(edge(box_px.x_max), middle.y), 0)?;
+        let (bottom, bottom_std) = on_plane(Pixel::new(middle.x, edge(box_px.y_max)), 1)?;
         let (width, height) = (model.size.width_px as f32, model.size.height_px as f32);
         let cut = [
             box_px.x_min < BORDER_PX,
@@ -50,13 +55,13 @@ impl SeenBox {
             box_px.x_max > width - BORDER_PX,
             box_px.y_max > height - BORDER_PX,
         ];
-        let mut std_devs = Edges::new(across, down, across, down);
+        let mut std_devs = Edges::new(left_std, top_std, right_std, bottom_std);
         for (std_dev, _) in std_devs.iter_mut().zip(cut).filter(|(_, cut)| *cut) {
             *std_dev = UNKNOWN_STD;
         }
         let some_left = cut.iter().any(|&cut| !cut);
         some_left.then_some(Self {
-            edges: Edges::new(left.x, top.y, right.x, bottom.y),
+            edges: Edges::new(left, top, right, bottom),
             std_devs,
             cut,
         })

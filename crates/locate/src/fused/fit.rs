@@ -113,6 +113,9 @@ impl View {
         let (yaw, turned) = &shape.turned[heading];
         let away = place - self.eye.xy();
         let distance_m = away.norm();
+        if !(distance_m > 0.0 && distance_m.is_finite()) {
+            return None;
+        }
         let radial = away / distance_m;
         let lateral = Vector2::new(-radial.y, radial.x);
         let axes = Matrix2::from_columns(&[radial, lateral]);

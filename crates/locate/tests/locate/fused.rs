@@ -279,3 +279,16 @@ fn a_known_heading_settles_which_of_the_possible_ones_it_is() {
     );
     assert!(weight(&known) > 0.8 && weight(&known) > weight(&alone));
 }
+
+#[test]
+fn a_greatest_range_shorter_than_the_object_places_nothing() {
+    let camera = camera(700.0, 1.0, 0.0);
+    let options = LocatorOptions {
+        max_range_m: 1.0,
+        ..LocatorOptions::new(Method::Fused)
+    };
+    let locator = CameraLocator::new(&camera, 0.0, options).expect("any camera");
+    let car = car(&camera, (15.0, 0.0), 1.2).expect("in view");
+    assert_eq!(locator.locate(&detection("car", car.box_px), None), None);
+    assert_eq!(locator.locate(&detection("bus", car.box_px), None), None);
+}

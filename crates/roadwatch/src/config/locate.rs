@@ -219,7 +219,8 @@ fn mount_noise(table: &Reader<'_, '_>) -> MountNoise {
 
 fn hidden_shares(table: &Reader<'_, '_>) -> HiddenShares {
     let defaults = HiddenShares::default();
-    let share = |key, default| table.number(key, 0.0..=0.4).unwrap_or(default);
+    // Twice the one and the other leave at least a tenth of the objects whole.
+    let share = |key, default| table.number(key, 0.0..=0.3).unwrap_or(default);
     HiddenShares {
         side: share("side_share", defaults.side),
         foot: share("foot_share", defaults.foot),

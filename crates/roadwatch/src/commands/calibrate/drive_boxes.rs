@@ -77,6 +77,11 @@ pub(super) fn collect(
         BoxesFrom::Detector => detected(args, drive, config_file)?,
         BoxesFrom::Truth => labelled(args, &config, &dataset)?,
     };
+    // Cameras that the configuration adds to the drive's have no boxes in it.
+    wanted.retain(|id| id.index() < frames.len());
+    if wanted.is_empty() {
+        return Err(anyhow!("the drive has no images of that camera").into());
+    }
     let cameras = wanted.into_iter().map(|id| {
         let camera = rig.rig.camera(id).clone();
         CameraBoxes::new(camera, id, (&frames[id.index()], Arc::clone(&dataset)))
