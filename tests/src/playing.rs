@@ -87,7 +87,7 @@ pub(crate) fn stages(
         detector,
         perceiver: Perceiver {
             locators,
-            reidentifier: Box::new(LeftToRight::new()),
+            reidentifier: Box::new(LeftToRight::new(LeftToRight::DEFAULT_GROUND_MEMORY)),
         },
         sinks,
     }

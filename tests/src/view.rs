@@ -105,6 +105,7 @@ impl Eye {
                 label: None,
                 box_px: Some(box_px),
                 silhouette_px: Some(silhouette_px),
+                visible_px: None,
                 truncated: f64::from(1.0 - inside).max(0.0),
                 occluded: 0.0,
                 center: Point::new(place.x, place.y, center_z_m),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from roadwatch_training.batches import BatchPlan, batches
 from roadwatch_training.cli import main
 from roadwatch_training.errors import TrainingError
 from roadwatch_training.export import export
+from roadwatch_training.exported import read_exported, settle_normalisation
 from roadwatch_training.images import ImageStore, read_rgb
 from roadwatch_training.inference import Detector, letterboxed
 from roadwatch_training.labels import read_folder
@@ -130,3 +132,26 @@ def test_the_letterbox_is_the_daemons() -> None:
     assert gain == pytest.approx(2 / 3)
     assert offset == (0, 12)
     assert (canvas[:12] == 114).all() and (canvas[12:372] == 200).all() and (canvas[372:] == 114).all()
+
+
+def test_training_goes_on_from_an_exported_file(learnt: DetectorNetwork, toy_folder: Path, tmp_path: Path) -> None:
+    export(learnt, tmp_path / "toy.onnx", {})
+    read = DetectorNetwork(TINY)
+    read_exported(tmp_path / "toy.onnx", read)
+    store = ImageStore.load(read_folder(toy_folder))
+    plan = BatchPlan(5, 8, Framing(192, 128, (0.9, 1.1)), CALM)
+    inputs = [batch.network_input() for batch in itertools.islice(batches(store, plan, 0, 0), 12)]
+    settle_normalisation(read, inputs)
+    with torch.no_grad():
+        expected = torch.cat([learnt.eval()(images) for images in inputs])
+        found = torch.cat([read.eval()(images) for images in inputs])
+        trained_on = torch.cat([read.train()(images) for images in inputs])
+    # Filters were stored with 16 bits; a batch's own means are near those of a dozen batches.
+    assert (found - expected).abs().mean() < 0.01 * expected.abs().mean()
+    assert (trained_on - expected).abs().mean() < 0.15 * expected.abs().mean()
+
+
+def test_an_exported_file_of_another_width_is_refused(learnt: DetectorNetwork, tmp_path: Path) -> None:
+    export(learnt, tmp_path / "toy.onnx", {})
+    with pytest.raises(TrainingError, match="another network"):
+        read_exported(tmp_path / "toy.onnx", DetectorNetwork(NetworkShape()))

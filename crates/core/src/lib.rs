@@ -9,6 +9,7 @@ pub mod detection;
 pub mod distortion;
 mod error_chain;
 pub mod frame;
+pub mod ground;
 pub mod location;
 pub mod mount;
 pub mod name;
@@ -24,9 +25,10 @@ pub use detection::{BoxPx, Detection, Score};
 pub use distortion::Distortion;
 pub use error_chain::error_chain;
 pub use frame::{CameraId, DecodeError, DecodeImage, Frame, Image, PerFrame, Pixels};
+pub use ground::{GroundReading, SlopeEvidence};
 pub use location::{
-    Heading, HeadingCandidate, HeadingCandidates, Located, Location, Method, Oriented, Prior,
-    SizeLwh,
+    Heading, HeadingCandidate, HeadingCandidates, Known, Located, Location, Method, Oriented,
+    Prior, SizeLwh,
 };
 pub use mount::Mount;
 pub use name::CameraName;

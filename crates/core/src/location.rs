@@ -2,6 +2,7 @@
 
 use crate::{
     detection::Detection,
+    ground::{GroundReading, SlopeEvidence},
     space::{BaseLink, Covariance, Point},
 };
 use arrayvec::ArrayVec;
@@ -86,8 +87,19 @@ pub struct Location {
     /// The headings that the box's shape allows, likeliest first; empty where the method says nothing of
     /// them.
     pub headings: HeadingCandidates,
+    /// What the box says of the ground below the object; `None` where the method says nothing of it.
+    pub ground: Option<GroundReading>,
     /// True when this is an earlier location kept because this frame gave none (docs/method.md, section 3).
     pub held: bool,
+}
+
+/// What earlier frames and other objects say, before a detection is located.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Known {
+    /// About this object; `None` when it was never located.
+    pub object: Option<Prior>,
+    /// About the ground, by all objects but this one.
+    pub slopes: SlopeEvidence,
 }
 
 /// What earlier frames say about a detection, before it is located.
@@ -132,6 +144,8 @@ pub struct Located {
     pub detection: Detection,
     /// Where it is.
     pub location: Location,
+    /// What other objects said of the ground when it was located.
+    pub slopes: SlopeEvidence,
 }
 
 /// A located object with its heading.

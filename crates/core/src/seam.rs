@@ -3,7 +3,7 @@
 use crate::{
     detection::Detection,
     frame::{CameraId, DecodeError, Frame, PerFrame},
-    location::{Location, Oriented, Prior},
+    location::{Known, Location, Oriented},
     scene::{Scene, Track},
     time::Timestamp,
 };
@@ -72,14 +72,14 @@ pub trait Detector: Send + Sync {
 
 /// Says where a detected object is. One per camera; remembers nothing.
 pub trait Locator: Send {
-    /// `None` when neither the box nor the prior gives a location.
-    fn locate(&self, detection: &Detection, prior: Option<&Prior>) -> Option<Location>;
+    /// `None` when neither the box nor an earlier location gives one.
+    fn locate(&self, detection: &Detection, known: &Known) -> Option<Location>;
 }
 
-/// Says who is who; the only memory of objects.
+/// Says who is who; the only memory, of objects and of the ground they stand on.
 pub trait Reidentifier: Send {
     /// What earlier frames know about each detection of this frame, in the same order.
-    fn recall(&self, seen: &PerFrame<Detection>) -> Vec<Option<Prior>>;
+    fn recall(&self, seen: &PerFrame<Detection>) -> Vec<Known>;
 
     /// Takes a frame's objects into memory and gives each its identity, in the same order. `unlocated` are
     /// the frame's other detections: nobody gets to know them, but they stand in the row.

@@ -58,6 +58,7 @@ fn suppress_200_boxes(bencher: Bencher<'_, '_>) {
             box_px: BoxPx::new(x, y, x + 30.0, y + 20.0).expect("a box"),
             score: f32::from(at * 37 % 200) / 200.0,
             class: at % 3,
+            kind: at % 3,
         }
     };
     let all: Vec<_> = (0..200).map(candidate).collect();

@@ -5,7 +5,7 @@ use crate::{
     letterbox::{Letterbox, Placement, Values},
     network::Network,
     nms::{Candidate, suppress},
-    options::{DetectorError, DetectorOptions, class_names, thresholds},
+    options::{DetectorError, DetectorOptions, class_names, kinds, thresholds},
     rhythm::Rhythm,
     runtime::Runtime,
     workspace::{Workspace, Workspaces},
@@ -28,6 +28,8 @@ pub struct YoloDetector {
     classes: Vec<ObjectClass>,
     /// Per class; infinite for classes nobody wants.
     thresholds: Vec<f32>,
+    /// Per class: what suppression takes for it.
+    kinds: Vec<u16>,
     iou_threshold: f32,
     max_detections: usize,
     letterboxes: RwLock<Vec<Arc<Letterbox>>>,
@@ -52,6 +54,7 @@ impl YoloDetector {
         }
         let classes = class_names(&network, options)?;
         let thresholds = thresholds(&classes, &options.filter)?;
+        let kinds = kinds(&classes, &options.exclusive_classes)?;
         let (placement, values) = match family {
             Family::YoloV5 | Family::YoloV8 => (Placement::Centred, Values::RgbUnit),
             Family::YoloX => (Placement::TopLeft, Values::BgrByte),
@@ -64,6 +67,7 @@ impl YoloDetector {
             values,
             classes,
             thresholds,
+            kinds,
             iou_threshold: options.iou_threshold,
             max_detections: options.max_detections,
             letterboxes: RwLock::default(),
@@ -148,6 +152,7 @@ impl YoloDetector {
                 box_px: prepared.letterbox.to_image(raw.corners)?,
                 score: raw.score,
                 class: raw.class,
+                kind: self.kinds[usize::from(raw.class)],
             })
         }));
         suppress(candidates, self.iou_threshold, self.max_detections);

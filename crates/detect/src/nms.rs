@@ -1,4 +1,4 @@
-//! Non-maximum suppression, class by class.
+//! Non-maximum suppression, class by class, or among classes that exclude each other.
 
 use roadwatch_core::BoxPx;
 
@@ -11,9 +11,11 @@ pub struct Candidate {
     pub score: f32,
     /// The network's class number.
     pub class: u16,
+    /// What suppression takes for its class: the same number for classes that exclude each other.
+    pub kind: u16,
 }
 
-/// Keeps, best score first, each candidate that overlaps no better one of its class by more than
+/// Keeps, best score first, each candidate that overlaps no better one of its kind by more than
 /// `iou_threshold`, at most `limit` of them. Works in place; the order of the input does not matter.
 pub fn suppress(candidates: &mut Vec<Candidate>, iou_threshold: f32, limit: usize) {
     candidates.sort_unstable_by(best_first);
@@ -21,7 +23,7 @@ pub fn suppress(candidates: &mut Vec<Candidate>, iou_threshold: f32, limit: usiz
     for at in 0..candidates.len() {
         let candidate = candidates[at];
         let overlaps = |better: &Candidate| {
-            better.class == candidate.class && better.box_px.iou(&candidate.box_px) > iou_threshold
+            better.kind == candidate.kind && better.box_px.iou(&candidate.box_px) > iou_threshold
         };
         if !candidates[..kept].iter().any(overlaps) {
             candidates[kept] = candidate;
@@ -75,6 +77,7 @@ mod tests {
                 box_px: BoxPx::new(x, y, x + w, y + h).expect("has an area"),
                 score: f32::from(score) / 10.0,
                 class,
+                kind: class % 2,
             });
         prop::collection::vec(one, 0..60)
     }
@@ -99,11 +102,11 @@ mod tests {
         }
 
         #[test]
-        fn no_two_kept_boxes_of_a_class_overlap_beyond_the_threshold(candidates in candidates()) {
+        fn no_two_kept_boxes_of_a_kind_overlap_beyond_the_threshold(candidates in candidates()) {
             let kept = suppressed(candidates);
             for (at, a) in kept.iter().enumerate() {
                 for b in &kept[at + 1..] {
-                    prop_assert!(a.class != b.class || a.box_px.iou(&b.box_px) <= 0.45);
+                    prop_assert!(a.kind != b.kind || a.box_px.iou(&b.box_px) <= 0.45);
                 }
             }
         }

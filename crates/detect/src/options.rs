@@ -34,6 +34,8 @@ pub struct DetectorOptions {
     pub filter: ClassFilter,
     /// Overlap above which the weaker of two boxes of a class is dropped, `0.0..=1.0`.
     pub iou_threshold: f32,
+    /// Classes that one object is only one of: the weaker of two boxes is dropped among them, too.
+    pub exclusive_classes: Vec<String>,
     /// Most detections per frame.
     pub max_detections: usize,
 }
@@ -67,24 +69,23 @@ pub enum DetectorError {
     /// Classes in the configuration that the model does not know.
     #[error(
         "{} of the model; it knows: {known}",
-        not_classes(allowed, with_thresholds)
+        not_classes(&[allowed, with_thresholds, exclusive])
     )]
     UnknownClasses {
         /// Those wanted.
         allowed: Vec<String>,
         /// Those with thresholds of their own.
         with_thresholds: Vec<String>,
+        /// Those that exclude each other.
+        exclusive: Vec<String>,
         /// The model's classes.
         known: String,
     },
 }
 
-fn not_classes(allowed: &[String], with_thresholds: &[String]) -> String {
-    let names: Vec<_> = allowed
-        .iter()
-        .chain(with_thresholds)
-        .map(|name| format!("`{name}`"))
-        .collect();
+fn not_classes(unknown: &[&[String]]) -> String {
+    let names = unknown.iter().copied().flatten();
+    let names: Vec<_> = names.map(|name| format!("`{name}`")).collect();
     let are = if names.len() == 1 {
         "is no class"
     } else {
@@ -138,11 +139,8 @@ pub(crate) fn thresholds(
         return Err(DetectorError::UnknownClasses {
             allowed,
             with_thresholds,
-            known: classes
-                .iter()
-                .map(ObjectClass::as_str)
-                .collect::<Vec<_>>()
-                .join(", "),
+            exclusive: Vec::new(),
+            known: listed(classes),
         });
     }
     let least = |class: &ObjectClass| {
@@ -159,4 +157,37 @@ pub(crate) fn thresholds(
         }
     };
     Ok(classes.iter().map(least).collect())
+}
+
+/// What suppression takes for each class: itself, and for those that exclude each other the first of them.
+pub(crate) fn kinds(
+    classes: &[ObjectClass],
+    exclusive: &[String],
+) -> Result<Vec<u16>, DetectorError> {
+    let is_named = |name: &String| classes.iter().any(|class| class.as_str() == name);
+    let unknown: Vec<_> = exclusive
+        .iter()
+        .filter(|name| !is_named(name))
+        .cloned()
+        .collect();
+    if !unknown.is_empty() {
+        return Err(DetectorError::UnknownClasses {
+            allowed: Vec::new(),
+            with_thresholds: Vec::new(),
+            exclusive: unknown,
+            known: listed(classes),
+        });
+    }
+    let excludes = |class: &ObjectClass| exclusive.iter().any(|name| name == class.as_str());
+    let first = classes.iter().position(excludes);
+    let kind = |(at, class): (usize, &ObjectClass)| match first {
+        Some(first) if excludes(class) => first as u16,
+        _ => at as u16,
+    };
+    Ok(classes.iter().enumerate().map(kind).collect())
+}
+
+fn listed(classes: &[ObjectClass]) -> String {
+    let names: Vec<_> = classes.iter().map(ObjectClass::as_str).collect();
+    names.join(", ")
 }

@@ -11,7 +11,9 @@ use crate::{
     truth::Truth,
 };
 use roadwatch_camera::RigDataset;
-use roadwatch_core::{CameraId, Detection, Heading, Location, Locator, Method, Rig, Timestamp};
+use roadwatch_core::{
+    CameraId, Detection, Heading, Known, Location, Locator, Method, Rig, Timestamp,
+};
 use std::{
     collections::{BTreeMap, HashMap},
     sync::Arc,
@@ -56,6 +58,7 @@ struct Pair<'a> {
     detection: &'a Detection,
     /// Where it was said to be, and which way it points; `None` when no place was published for it.
     published: Option<(&'a Location, Option<Heading>)>,
+    known: Known,
     target: Arc<Target>,
 }
 
@@ -184,6 +187,7 @@ impl Evaluation<'_> {
                     published: frame
                         .location(detection)
                         .map(|location| (location, frame.heading(detection))),
+                    known: frame.known(detection),
                     target,
                 }
             }));
@@ -205,7 +209,7 @@ impl Matched<'_> {
         locators: &[Box<dyn Locator>],
     ) -> impl Iterator<Item = Sample> {
         self.pairs.iter().map(move |pair| {
-            let found = locators[pair.camera].locate(pair.detection, None);
+            let found = locators[pair.camera].locate(pair.detection, &pair.known);
             let answer = found.as_ref().map(|location| (location, None));
             Sample::judge(Estimator::By(method), &pair.target, answer)
         })

@@ -195,6 +195,7 @@ mod tests {
             yaw_rad: None,
             box_px: BoxPx::new(400.0, 250.0, 500.0, 310.0),
             silhouette_px: BoxPx::new(402.0, 256.0, 498.0, 308.0),
+            visible_px: None,
             truncated: 0.0,
             occluded: 0.0,
             center: Point::new(x, y, 0.75),

@@ -30,6 +30,7 @@ pub(crate) static CAR_TRUTH: LazyLock<TruthObject> = LazyLock::new(|| TruthObjec
     label: None,
     box_px: BoxPx::new(400.0, 250.0, 500.0, 310.0),
     silhouette_px: None,
+    visible_px: None,
     truncated: 0.0,
     occluded: 0.0,
     center: Point::new(20.0, 0.0, 0.7),
@@ -69,6 +70,7 @@ pub(crate) fn location(position: Point<BaseLink>) -> Location {
         size: SIZE,
         method: Method::TriangleFy,
         headings: HeadingCandidates::default(),
+        ground: None,
         held: false,
     }
 }

@@ -69,7 +69,7 @@ pub struct Matches {
 
 /// Best score first, each detection takes the free scored object it overlaps most, if by [`MIN_IOU`] or
 /// more. Only a detection that finds none may stand for an object that is not scored (as in COCO's
-/// evaluation); such count neither for nor against. Otherwise a car hidden behind another would take the
+/// evaluation), by its whole box or by what is seen of it; such count neither for nor against. Otherwise a car hidden behind another would take the
 /// detection of the one in front, whose box is nearly the same.
 #[must_use]
 pub fn match_image(
@@ -90,14 +90,19 @@ pub fn match_image(
     let candidates = objects.iter().enumerate();
     let candidates = candidates.filter(|(_, object)| filter.may_stand_for_scored(&object.class));
     let (mut scored, mut others): (Vec<_>, Vec<_>) = candidates
-        .filter_map(|(at, object)| Some((at, object.box_px?)))
-        .partition(|&(at, _)| filter.admits(&objects[at]));
+        .map(|(at, _)| at)
+        .partition(|&at| filter.admits(&objects[at]));
     let mut matches = Matches::default();
     for detection in order {
         let box_px = detections[detection].box_px;
-        if let Some(object) = take_best(&mut scored, box_px) {
+        let whole = |at: usize| objects[at].box_px.map_or(0.0, |whole| whole.iou(&box_px));
+        let seen = |at: usize| {
+            let visible = objects[at].visible_px;
+            visible.map_or(0.0, |visible| visible.iou(&box_px))
+        };
+        if let Some(object) = take_best(&mut scored, whole) {
             matches.pairs.push((detection, object));
-        } else if take_best(&mut others, box_px).is_none()
+        } else if take_best(&mut others, |at| whole(at).max(seen(at))).is_none()
             && !is_unlabelled(box_px, &labels.unlabelled_px)
         {
             matches.false_alarms.push(detection);
@@ -117,14 +122,12 @@ fn is_unlabelled(box_px: BoxPx, regions: &[BoxPx]) -> bool {
     regions.fold(0.0, f32::max) >= UNLABELLED_SHARE * box_px.area_px2()
 }
 
-/// Removes the object that overlaps the box most; `None` when none does by [`MIN_IOU`].
-fn take_best(free: &mut Vec<(usize, BoxPx)>, box_px: BoxPx) -> Option<usize> {
-    let overlaps = free
-        .iter()
-        .enumerate()
-        .map(|(place, (_, object))| (box_px.iou(object), place));
+/// Removes the object of the greatest overlap; `None` when none reaches [`MIN_IOU`].
+fn take_best(free: &mut Vec<usize>, iou: impl Fn(usize) -> f32) -> Option<usize> {
+    let overlaps = free.iter().enumerate();
+    let overlaps = overlaps.map(|(place, &object)| (iou(object), place));
     let (iou, place) = overlaps.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (iou >= MIN_IOU).then(|| free.remove(place).0)
+    (iou >= MIN_IOU).then(|| free.remove(place))
 }
 
 #[cfg(test)]
@@ -147,12 +150,32 @@ mod tests {
             label: None,
             box_px: BoxPx::new(x, 0.0, x + 40.0, 30.0),
             silhouette_px: None,
+            visible_px: None,
             truncated: 0.0,
             occluded: 0.0,
             center: Point::new(10.0, 0.0, 0.7),
             size: None,
             yaw_rad: None,
         }
+    }
+
+    #[test]
+    fn what_is_seen_of_an_object_that_is_not_scored_is_no_false_alarm() {
+        let hidden = TruthObject {
+            occluded: 0.6,
+            box_px: BoxPx::new(0.0, 0.0, 120.0, 30.0),
+            visible_px: BoxPx::new(0.0, 0.0, 45.0, 30.0),
+            ..object(0.0, "car")
+        };
+        let found = detection(0.0, 0.9, "car");
+        let matches =
+            |object| match_image(&[&found], &vec![object].into(), &TruthFilter::default());
+        assert_eq!(matches(hidden.clone()), Matches::default());
+        let unsaid = TruthObject {
+            visible_px: None,
+            ..hidden
+        };
+        assert_eq!(matches(unsaid).false_alarms, [0]);
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! A sink that keeps what was perceived, for scoring afterwards.
 
 use roadwatch_core::{
-    CameraId, Detection, Heading, Location, Output, Sink, SinkError, Timestamp, Track,
+    CameraId, Detection, Heading, Known, Location, Output, Sink, SinkError, SlopeEvidence,
+    Timestamp, Track,
 };
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -33,6 +34,17 @@ impl Recorded {
     pub fn location(&self, index: usize) -> Option<&Location> {
         let track = self.tracks.get(index)?;
         Some(&track.observed.located.location)
+    }
+
+    /// What is known of the detection beside its box: of the ground by other objects. Nothing of itself from
+    /// earlier frames, so that every method stands alone.
+    #[must_use]
+    pub fn known(&self, index: usize) -> Known {
+        let located = self.tracks.get(index).map(|track| &track.observed.located);
+        Known {
+            object: None,
+            slopes: located.map_or_else(SlopeEvidence::default, |located| located.slopes),
+        }
     }
 
     /// Its heading; `None` where none is known.

@@ -27,6 +27,8 @@ pub struct TruthObject {
     /// The box that a perfect detector gives: of the object's outline as if nothing stood in front of it,
     /// clipped to the image, pixels; `None` where the labels do not say, as with cuboids drawn by hand.
     pub silhouette_px: Option<BoxPx>,
+    /// The box of what is seen of it, pixels; `None` where the labels do not say.
+    pub visible_px: Option<BoxPx>,
     /// Share of the hull outside the image, 0 to 1.
     pub truncated: f64,
     /// Share hidden by other objects, 0 to 1.
@@ -131,6 +133,9 @@ struct Object {
     box_px: [f32; 4],
     #[serde(default)]
     silhouette_px: Option<[f32; 4]>,
+    /// A box in our own datasets; others count pixels under this name.
+    #[serde(default)]
+    visible_px: serde_json::Value,
     truncated: f64,
     occluded: f64,
     center_base_m: [f64; 3],
@@ -247,6 +252,9 @@ impl From<Object> for TruthObject {
             label: object.label,
             box_px: to_box(object.box_px),
             silhouette_px: object.silhouette_px.and_then(to_box),
+            visible_px: serde_json::from_value(object.visible_px)
+                .ok()
+                .and_then(to_box),
             truncated: object.truncated,
             occluded: object.occluded,
             center: Point::new(x, y, z),
@@ -278,7 +286,7 @@ mod tests {
 
     #[test]
     fn the_silhouette_is_what_is_seen_and_the_cuboid_where_there_is_none() {
-        let silhouette = r#""silhouette_px": [11, 22, 49, 59], "visible_px": 1300,"#;
+        let silhouette = r#""silhouette_px": [11, 22, 49, 59], "visible_px": [11, 22, 30, 59],"#;
         assert_eq!(seen_px(silhouette), BoxPx::new(11.0, 22.0, 49.0, 59.0));
         assert_eq!(seen_px(""), BoxPx::new(10.0, 20.0, 50.0, 60.0));
         assert_eq!(

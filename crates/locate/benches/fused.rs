@@ -2,8 +2,8 @@
 
 use divan::{Bencher, black_box};
 use roadwatch_core::{
-    BoxPx, CameraModel, CameraName, Detection, Distortion, ImageSize, Intrinsics, Locator as _,
-    Method, Mount, ObjectClass, RigCamera, Score,
+    BoxPx, CameraModel, CameraName, Detection, Distortion, ImageSize, Intrinsics, Known,
+    Locator as _, Method, Mount, ObjectClass, RigCamera, Score,
 };
 use roadwatch_locate::{CameraLocator, LocatorOptions};
 
@@ -17,7 +17,7 @@ fn per_object(bencher: Bencher<'_, '_>, method: Method) {
     let locator = locator.expect("needs nothing else");
     let cars = [(300.0, 20.0), (500.0, 30.0), (700.0, 60.0), (200.0, 120.0)].map(car);
     let mut next = cars.iter().cycle();
-    bencher.bench_local(|| locator.locate(black_box(next.next()?), None));
+    bencher.bench_local(|| locator.locate(black_box(next.next()?), &Known::default()));
 }
 
 /// A box `height_px` high whose left edge is at `x_min`, standing on flat ground.

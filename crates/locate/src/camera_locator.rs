@@ -13,8 +13,8 @@ use crate::{
     triangle::locate_by_triangle,
 };
 use roadwatch_core::{
-    BoxPx, CameraName, Detection, Heading, HeadingCandidates, Location, Locator, Method, Prior,
-    RigCamera, SizeLwh,
+    BoxPx, CameraName, Detection, Heading, HeadingCandidates, Known, Location, Locator, Method,
+    RigCamera, SizeLwh, SlopeEvidence,
 };
 use std::sync::Arc;
 
@@ -141,7 +141,12 @@ impl CameraLocator {
     /// The location that this box alone gives; `None` for a class of unknown size, a box that is not a
     /// box, and wherever the method has no answer within the greatest range.
     #[must_use]
-    pub fn measure(&self, detection: &Detection, prior: Option<&Heading>) -> Option<Location> {
+    pub fn measure(
+        &self,
+        detection: &Detection,
+        heading: Option<&Heading>,
+        slopes: &SlopeEvidence,
+    ) -> Option<Location> {
         let BoxPx {
             x_min,
             y_min,
@@ -153,7 +158,7 @@ impl CameraLocator {
         let on_ground = class.standing == Standing::OnGround;
         if let (Strategy::Fused(fused), true) = (&self.strategy, on_ground) {
             let boxed = (&box_px, &self.box_noise);
-            let found = fused.locate(&self.camera, &detection.class, boxed, prior)?;
+            let found = fused.locate(&self.camera, &detection.class, boxed, (heading, slopes))?;
             return self.fused(found);
         }
         let fy = self.camera.model.intrinsics.fy;
@@ -187,6 +192,7 @@ impl CameraLocator {
         let location = self.location(found.estimate, found.size, Method::Fused)?;
         Some(Location {
             headings: found.headings,
+            ground: found.ground,
             ..location
         })
     }
@@ -214,17 +220,19 @@ impl CameraLocator {
             size,
             method,
             headings: HeadingCandidates::default(),
+            ground: None,
             held: false,
         })
     }
 }
 
 impl Locator for CameraLocator {
-    fn locate(&self, detection: &Detection, prior: Option<&Prior>) -> Option<Location> {
+    fn locate(&self, detection: &Detection, known: &Known) -> Option<Location> {
+        let prior = known.object.as_ref();
         // What is too old to be held is too old to be believed.
         let recent = prior.filter(|prior| prior.age < self.hold.max_age);
         let heading = recent.and_then(|prior| prior.heading.as_ref());
-        let measured = self.measure(detection, heading);
+        let measured = self.measure(detection, heading, &known.slopes);
         measured.or_else(|| self.hold.keep(prior?))
     }
 }

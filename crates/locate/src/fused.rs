@@ -11,6 +11,7 @@
 
 mod edges;
 mod fit;
+mod level;
 mod mixture;
 mod normal;
 mod solid;
@@ -26,11 +27,13 @@ use arrayvec::ArrayVec;
 use edges::SeenBox;
 pub use fit::HiddenShares;
 use fit::{Explanation, Shape, View};
+use level::Ground;
 use mixture::{HEADINGS, MOST_EXPLANATIONS, Mixture, wrapped, yaw_of};
 use multiversion::multiversion;
 use nalgebra::{Matrix3, Vector2};
 use roadwatch_core::{
-    BoxPx, Heading, HeadingCandidates, ObjectClass, RigCamera, SizeLwh,
+    BoxPx, GroundReading, Heading, HeadingCandidates, ObjectClass, RigCamera, SizeLwh,
+    SlopeEvidence,
     space::{Covariance, Point},
 };
 use solid::Solid;
@@ -54,6 +57,8 @@ pub struct FusedEstimate {
     pub estimate: Estimate,
     /// At most four, likeliest first.
     pub headings: HeadingCandidates,
+    /// What the box says of the ground, if it does.
+    pub ground: Option<GroundReading>,
     /// The expected size of the class.
     pub size: SizeLwh,
 }
@@ -68,15 +73,13 @@ impl FusedLocator {
         hidden: HiddenShares,
     ) -> Self {
         let isometry = camera.base_from_optical.isometry.inverse();
+        let noise = plane.mount_noise;
+        let slopes = (noise.pitch_rad.tan(), noise.local_slope_rad.tan());
         let view = View {
             eye: camera.base_from_optical.origin().coords.coords,
             optical_from_base: *isometry.rotation.to_rotation_matrix().matrix(),
-            ground_z_m: plane.z_m,
+            ground: Ground::level(plane.z_m, noise.ground_m, slopes),
             hidden,
-            ground_std: (
-                plane.mount_noise.ground_m,
-                plane.mount_noise.pitch_rad.tan(),
-            ),
         };
         let shapes = sizes.expected().map(|(class, size)| {
             let shape = shape(&HullSpec::for_class(class), size, &view.optical_from_base);
@@ -90,34 +93,45 @@ impl FusedLocator {
     }
 
     /// Places a box; `None` for a class of unknown size, and where no heading puts the object in front of
-    /// the camera. `prior` is the heading this object had, with its deviation now.
+    /// the camera. Given are the heading this object had, with its deviation now, and what others say of the
+    /// ground.
     #[must_use]
     pub fn locate(
         &self,
         camera: &RigCamera,
         class: &ObjectClass,
         (box_px, noise): (&BoxPx, &BoxNoise),
-        prior: Option<&Heading>,
+        (heading, slopes): (Option<&Heading>, &SlopeEvidence),
     ) -> Option<FusedEstimate> {
+        let view = View {
+            ground: self.view.ground.learnt(slopes),
+            ..self.view
+        };
         let (shape, size) = self.shapes.get(class)?;
         let seen = SeenBox::new(&camera.model, box_px, noise)?;
         let start = self.start(camera, box_px, &seen, *size)?;
-        let explanations = explanations(&self.view, shape, &seen, start, prior);
+        let explanations = explanations(&view, shape, &seen, start, heading);
         let mixture = Mixture::new(&explanations)?;
         let (place, flat) = mixture.place();
-        let away = place - self.view.eye.xy();
-        let distance_m = away.norm();
-        let ground_std_m = self.view.ground_std_m(distance_m);
+        let away = place - view.eye.xy();
+        let ground_std_m = view.ground.std_m(place, away.norm());
         let upright_m = ground_std_m.hypot(shape.std_dev.height_m / 2.0);
         let mut covariance = Matrix3::zeros();
         covariance.fixed_view_mut::<2, 2>(0, 0).copy_from(&flat);
         covariance[(2, 2)] = upright_m * upright_m;
         Some(FusedEstimate {
             estimate: Estimate {
-                position: Point::new(place.x, place.y, self.view.ground_z_m + size.height_m / 2.0),
+                position: Point::new(
+                    place.x,
+                    place.y,
+                    view.ground.height_m(place) + size.height_m / 2.0,
+                ),
                 covariance: Covariance::new(covariance),
             },
             headings: mixture.headings(away.y.atan2(away.x)),
+            ground: mixture
+                .best()
+                .and_then(|best| view.ground_reading(shape, &seen, best, start)),
             size: *size,
         })
     }

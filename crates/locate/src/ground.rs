@@ -20,15 +20,20 @@ pub struct MountNoise {
     pub pitch_rad: f64,
     /// Standard deviation of the ground's height under the object, metres.
     pub ground_m: f64,
+    /// The part of `pitch_rad` that is an object's own: what is left when the slopes under the rig are known,
+    /// radians. Not more than `pitch_rad`. For [`Method::Fused`](roadwatch_core::Method::Fused).
+    pub local_slope_rad: f64,
 }
 
 impl Default for MountNoise {
     /// 0.8 degrees: springs let a car pitch by a third of a degree in ordinary driving, and the road's grade
-    /// under the object differs from that under the wheels by a percent or so. 5 cm is a road's camber.
+    /// under the object differs from that under the wheels by a percent or so. 5 cm is a road's camber. Half
+    /// of the 0.8 degrees is taken to be local: kerbs, crowns, the next street's grade.
     fn default() -> Self {
         Self {
             pitch_rad: 0.8_f64.to_radians(),
             ground_m: 0.05,
+            local_slope_rad: 0.4_f64.to_radians(),
         }
     }
 }

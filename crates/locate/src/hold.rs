@@ -36,6 +36,7 @@ impl HoldOptions {
         let grown = Matrix3::from_diagonal(&Vector3::new(moved_m, moved_m, 0.0).map(|m| m * m));
         Some(Location {
             covariance: Covariance::new(prior.location.covariance.matrix + grown),
+            ground: None,
             held: true,
             ..prior.location.clone()
         })

@@ -5,7 +5,7 @@ use roadwatch_core::{
     BoxPx, CameraId, CameraModel, CameraName, Detection, Distortion, Frame, HeadingCandidates,
     Image, ImageSize, Intrinsics, Located, Location, Method, Mount, ObjectClass, Oriented, Output,
     PerFrame, Perceived, Pixels, Rig, RigCamera, Scene, SceneObject, Score, Sink, SizeLwh,
-    Timestamp, Track, TrackId,
+    SlopeEvidence, Timestamp, Track, TrackId,
     space::{Covariance, Point},
 };
 use roadwatch_picture::{Canvas, PictureSink, SCENE_FILE, VIEWS_FILE, camera_view};
@@ -55,8 +55,10 @@ fn car(ahead_m: f64) -> Track {
             },
             method: Method::Table,
             headings: HeadingCandidates::default(),
+            ground: None,
             held: false,
         },
+        slopes: SlopeEvidence::default(),
     };
     Track {
         id: TrackId(7),

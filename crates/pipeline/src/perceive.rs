@@ -13,17 +13,18 @@ pub struct Perceiver {
 impl Perceiver {
     /// Recall, locate, commit. Headings have no estimator yet, so each is `None`.
     pub fn perceive(&mut self, seen: PerFrame<Detection>) -> Perceived {
-        let priors = self.reidentifier.recall(&seen);
+        let known = self.reidentifier.recall(&seen);
         let PerFrame { frame, items } = seen;
         let locator = &self.locators[frame.camera.index()];
         let mut located = Vec::with_capacity(items.len());
         let mut unlocated = Vec::new();
-        for (detection, prior) in items.into_iter().zip(priors) {
-            match locator.locate(&detection, prior.as_ref()) {
+        for (detection, known) in items.into_iter().zip(known) {
+            match locator.locate(&detection, &known) {
                 Some(location) => located.push(Oriented {
                     located: Located {
                         detection,
                         location,
+                        slopes: known.slopes,
                     },
                     heading: None,
                 }),

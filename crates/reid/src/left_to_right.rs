@@ -1,10 +1,11 @@
 //! The paper's baseline: the n-th object from the left keeps the n-th identity.
 
+use crate::ground_memory::GroundMemory;
 use roadwatch_core::{
-    BoxPx, CameraId, Detection, Heading, Location, ObjectClass, Oriented, PerFrame, Prior,
-    Reidentifier, Timestamp, Track, TrackId,
+    BoxPx, CameraId, Detection, Frame, Heading, Known, Location, ObjectClass, Oriented, PerFrame,
+    Prior, Reidentifier, Timestamp, Track, TrackId,
 };
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, time::Duration};
 
 /// Identities of one camera; no frame has more objects. In tens, so that people can read an identity.
 const PLACES: u64 = 10_000;
@@ -18,10 +19,11 @@ const PLACES: u64 = 10_000;
 ///
 /// Remembered are the objects of each camera's last frame, no more. Places are counted among all
 /// detections, also those that got no location.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct LeftToRight {
     /// By camera and place.
     rows: BTreeMap<CameraId, BTreeMap<usize, Remembered>>,
+    ground: GroundMemory,
 }
 
 /// One place of a row.
@@ -40,10 +42,18 @@ struct Measured {
 }
 
 impl LeftToRight {
-    /// Remembers nobody yet.
+    /// About how long the slopes of the ground are remembered by default: a grade lasts a few car lengths, and
+    /// so do two seconds of city traffic.
+    pub const DEFAULT_GROUND_MEMORY: Duration = Duration::from_secs(2);
+
+    /// Remembers nobody yet. What objects say of the ground is remembered for about `ground_memory`, not at all
+    /// when that is zero.
     #[must_use]
-    pub fn new() -> Self {
-        Self::default()
+    pub fn new(ground_memory: Duration) -> Self {
+        Self {
+            rows: BTreeMap::new(),
+            ground: GroundMemory::new(ground_memory),
+        }
     }
 
     fn remembered(
@@ -87,18 +97,28 @@ impl LeftToRight {
 impl Reidentifier for LeftToRight {
     /// The n-th detection from the left gets what the n-th object of the camera's last frame left behind;
     /// `None` when there was none, when it was of another class, or when it never had a location.
-    fn recall(&self, seen: &PerFrame<Detection>) -> Vec<Option<Prior>> {
+    fn recall(&self, seen: &PerFrame<Detection>) -> Vec<Known> {
+        let Frame {
+            camera,
+            captured_at,
+            ..
+        } = seen.frame;
         let order = places(seen.items.iter().map(|detection| &detection.box_px));
-        let prior = |(detection, place): (&Detection, usize)| {
-            let before = self.remembered(seen.frame.camera, place, &detection.class)?;
+        let ground = self.ground.at(captured_at);
+        let prior = |class: &ObjectClass, place: usize| {
+            let before = self.remembered(camera, place, class)?;
             let measured = before.location.as_ref()?;
             Some(Prior {
                 location: measured.location.clone(),
                 heading: before.heading,
-                age: seen.frame.captured_at.saturating_since(measured.at),
+                age: captured_at.saturating_since(measured.at),
             })
         };
-        seen.items.iter().zip(order).map(prior).collect()
+        let known = |(detection, place): (&Detection, usize)| Known {
+            object: prior(&detection.class, place),
+            slopes: ground.without((camera, identity(camera, place))),
+        };
+        seen.items.iter().zip(order).map(known).collect()
     }
 
     /// Items come back in the order they were given in.
@@ -116,6 +136,14 @@ impl Reidentifier for LeftToRight {
         };
         let row = seen.items.iter().zip(&order).map(remember).collect();
         self.rows.insert(camera, row);
+        let at = seen.frame.captured_at;
+        self.ground.forget(at);
+        for (one, &place) in seen.items.iter().zip(&order) {
+            if let Some(reading) = &one.located.location.ground {
+                self.ground
+                    .learn((camera, identity(camera, place)), reading, at);
+            }
+        }
         let track = |(observed, place)| Track {
             id: identity(camera, place),
             observed,

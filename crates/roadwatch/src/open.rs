@@ -50,11 +50,16 @@ fn detector_keys(error: &DetectorError) -> Vec<&'static str> {
         DetectorError::UnknownClasses {
             allowed,
             with_thresholds,
+            exclusive,
             ..
         } => {
-            let wanted = (!allowed.is_empty()).then_some("detector.classes");
-            let own = (!with_thresholds.is_empty()).then_some("detector.class_thresholds");
-            wanted.into_iter().chain(own).collect()
+            let lists = [
+                (allowed, "detector.classes"),
+                (with_thresholds, "detector.class_thresholds"),
+                (exclusive, "detector.exclusive_classes"),
+            ];
+            let to_blame = lists.into_iter().filter(|(unknown, _)| !unknown.is_empty());
+            to_blame.map(|(_, key)| key).collect()
         }
     }
 }

@@ -79,7 +79,7 @@ impl Session {
             detector: self.detector,
             perceiver: Perceiver {
                 locators: self.locators,
-                reidentifier: Box::new(LeftToRight::new()),
+                reidentifier: Box::new(LeftToRight::new(self.config.locate.ground_memory)),
             },
             sinks,
         };

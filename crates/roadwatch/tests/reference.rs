@@ -38,6 +38,7 @@ fn open(library: PathBuf, model: &Path, max_batch: usize) -> YoloDetector {
             allowed: None,
         },
         iou_threshold: 0.45,
+        exclusive_classes: Vec::new(),
         max_detections: 300,
     };
     YoloDetector::open(&runtime, &options).expect("opens")

@@ -10,6 +10,7 @@ from .commands import run_detector, run_export, run_score
 from .errors import TrainingError
 from .inference import DEFAULT_SCORE_THRESHOLD
 from .network import SHAPES
+from .parts.commands import add_commands
 from .settings import Settings
 
 
@@ -42,6 +43,7 @@ def _parser() -> argparse.ArgumentParser:
     add("--threshold", type=float, default=DEFAULT_SCORE_THRESHOLD, help="least score (%(default)s)")
     add("--min-height-px", type=float, default=24.0, help="least height of an object (%(default)s)")
     score.set_defaults(run=run_score)
+    add_commands(commands)
     return parser
 
 
@@ -57,7 +59,10 @@ def _add_detector(commands: argparse._SubParsersAction) -> None:
         "--resume", action="store_true", help="go on from the checkpoint in --out, with its settings"
     )
     begin.add_argument(
-        "--start-from", type=Path, metavar="RUN", help="begin with the weights of another --out, not random ones"
+        "--start-from",
+        type=Path,
+        metavar="RUN",
+        help="begin with the weights of another --out, or of an exported .onnx file, not with random ones",
     )
     add("--width", choices=SHAPES, default=default.width, help="channels of the network (%(default)s)")
     window = (default.width_px, default.height_px)

@@ -15,8 +15,10 @@ from .errors import TrainingError
 from .augment.geometry import PADDING_GREY
 
 DEFAULT_SCORE_THRESHOLD = 0.25
-# The daemon's own configuration: of boxes of one class that overlap more, the best stays.
+# The demo's own configuration: of boxes of one class that overlap more, the best stays, and so it does among
+# classes that one object is not two of.
 MAX_OVERLAP = 0.45
+ONE_OF = ("car", "bus", "truck")
 
 # Left and top, pixels.
 Offset = tuple[int, int]
@@ -57,8 +59,8 @@ class Detector:
         kept = np.flatnonzero(scores >= score_threshold)
         kept = kept[np.argsort(-scores[kept], kind="stable")]
         boxes = _image_boxes(output[:4, kept].T, gain, offset, image.shape)
-        chosen = suppressed(boxes, classes[kept])
         names = [self.class_names[number] for number in classes[kept]]
+        chosen = suppressed(boxes, [ONE_OF[0] if name in ONE_OF else name for name in names])
         return [Detection(names[at], float(scores[kept[at]]), boxes[at]) for at in chosen]
 
 
@@ -80,11 +82,11 @@ def _image_boxes(rows: np.ndarray, gain: float, offset: Offset, shape: tuple[int
     return boxes.clip(0, np.array([shape[1], shape[0]] * 2, np.float32))
 
 
-def suppressed(boxes: np.ndarray, classes: np.ndarray) -> list[int]:
-    """Of boxes sorted best first, those that overlap no better one of their class."""
+def suppressed(boxes: np.ndarray, kinds: list[str]) -> list[int]:
+    """Of boxes sorted best first, those that overlap no better one of their kind."""
     overlaps = pairwise_iou_array(boxes, boxes) > MAX_OVERLAP
     kept: list[int] = []
     for at in range(len(boxes)):
-        if not any(overlaps[at, better] and classes[at] == classes[better] for better in kept):
+        if not any(overlaps[at, better] and kinds[at] == kinds[better] for better in kept):
             kept.append(at)
     return kept

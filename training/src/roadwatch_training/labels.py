@@ -17,16 +17,20 @@ MAX_OCCLUDED = 0.7
 INVISIBLE_OCCLUDED = 0.97
 
 
+Box = tuple[float, float, float, float]
+
+
 @dataclass(frozen=True)
 class ObjectLabel:
     """One object of an image.
 
-    `box_px` is its silhouette's box (left, top, right, bottom; edges, pixels of the image), `occluded` and
-    `truncated` are shares, 0 to 1. An object that is not `sought` costs nothing whether it is found or not.
+    `box_px` is its silhouette's box (left, top, right, bottom; edges, pixels of the image), `visible_px` that of
+    what is seen of it; `occluded` and `truncated` are shares, 0 to 1. An object that is not `sought` costs nothing whether it is found or not.
     """
 
     class_number: int
-    box_px: tuple[float, float, float, float]
+    box_px: Box
+    visible_px: Box
     occluded: float
     truncated: float
     sought: bool
@@ -83,11 +87,16 @@ def _object_label(entry: dict) -> ObjectLabel | None:
     occluded = float(entry.get("occluded", 0.0))
     if number is None or box is None or entry["visible_px"] is None or occluded > INVISIBLE_OCCLUDED:
         return None
-    left, top, right, bottom = (float(edge) for edge in box)
     return ObjectLabel(
         class_number=number,
-        box_px=(left, top, right, bottom),
+        box_px=_box(box),
+        visible_px=_box(entry["visible_px"]),
         occluded=occluded,
         truncated=float(entry.get("truncated", 0.0)),
         sought=occluded <= MAX_OCCLUDED,
     )
+
+
+def _box(edges: list) -> Box:
+    left, top, right, bottom = (float(edge) for edge in edges)
+    return left, top, right, bottom

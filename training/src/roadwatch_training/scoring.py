@@ -11,7 +11,7 @@ from .boxes import pairwise_iou_array
 from .classes import CLASS_NAMES, VEHICLE_CLASSES
 from .inference import DEFAULT_SCORE_THRESHOLD, Detection, Detector
 from .images import read_rgb
-from .labels import LabelledImage, ObjectLabel
+from .labels import Box, LabelledImage, ObjectLabel
 
 MIN_IOU = 0.5
 # Thresholds of the table beside the one asked for.
@@ -73,8 +73,8 @@ def add_image(
 ) -> None:
     """Matches as `roadwatch evaluate` does: best score first, each takes the object it overlaps most.
 
-    Only a detection that finds none that counts may stand for one that does not; it is then neither right
-    nor wrong.
+    Only a detection that finds none that counts may stand for one that does not, by its whole box or by what
+    is seen of it; it is then neither right nor wrong.
     """
     candidates = [label for label in labels if scored.may_stand(CLASS_NAMES[label.class_number])]
     counting = [label for label in candidates if scored.admits(label)]
@@ -83,17 +83,21 @@ def add_image(
     for detection in sorted(detections, key=lambda d: -d.score):
         if not scored.may_stand(detection.class_name):
             continue
-        if _take_best(counting, detection):
+        if _take_best(counting, detection, lambda label: [label.box_px]):
             tally.found.append(detection.score)
-        elif not _take_best(others, detection):
+        elif not _take_best(others, detection, lambda label: [label.box_px, label.visible_px]):
             tally.false_alarms.append(detection.score)
 
 
-def _take_best(free: list[ObjectLabel], detection: Detection) -> bool:
+def _take_best(
+    free: list[ObjectLabel], detection: Detection, boxes: Callable[[ObjectLabel], list[Box]]
+) -> bool:
+    """Takes away the object that one of whose boxes overlaps most; false where that is too little."""
     if not free:
         return False
-    boxes = np.array([label.box_px for label in free], np.float32)
-    overlaps = pairwise_iou_array(detection.box_px[None].astype(np.float32), boxes)[0]
+    of_each = np.array([boxes(label) for label in free], np.float32)
+    overlaps = pairwise_iou_array(detection.box_px[None].astype(np.float32), of_each.reshape(-1, 4))
+    overlaps = overlaps.reshape(of_each.shape[:2]).max(1)
     best = int(overlaps.argmax())
     if overlaps[best] < MIN_IOU:
         return False

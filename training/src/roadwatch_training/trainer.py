@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import time
 from collections.abc import Callable
@@ -17,6 +18,7 @@ from .averaging import AveragedWeights
 from .batches import Batch, BatchPlan, batches
 from .checkpoint import Checkpoint
 from .errors import TrainingError
+from .exported import read_exported, settle_normalisation
 from .images import ImageStore
 from .losses import Losses, detection_losses
 from .network import SHAPES, Cells, DetectorNetwork
@@ -28,6 +30,8 @@ PROGRESS_SECONDS = 10.0
 FINAL_RATE_SHARE = 0.02
 MAX_GRADIENT_NORM = 10.0
 ADAM_BETAS = (0.9, 0.99)
+# Batches that say what an exported network's normalisations undo: five hundred examples settle a mean.
+SETTLING_BATCHES = 60
 
 Say = Callable[[str], None]
 
@@ -67,15 +71,28 @@ class Training:
         self.optimiser.load_state_dict(state.optimiser)
         self.batches_done, self.seconds_before = state.batches_done, state.seconds_spent
 
-    def start_from(self, folder: Path) -> None:
-        """Begins with the averaged weights of another training of the same width instead of random ones."""
-        state = Checkpoint.read(folder)
+    def start_from(self, run: Path) -> None:
+        """Begins with the weights of another training of the same width instead of random ones.
+
+        `run` is that training's folder, whose averaged weights are taken, or an exported `.onnx` file.
+        """
+        if run.suffix == ".onnx":
+            self._start_from_exported(run)
+            return
+        state = Checkpoint.read(run)
         if state.settings["width"] != self.settings.width:
             raise TrainingError(
-                f"`{folder}` holds weights of --width {state.settings['width']}, not {self.settings.width}"
+                f"`{run}` holds weights of --width {state.settings['width']}, not {self.settings.width}"
             )
         self.average.load_state_dict(state.average)
         self.network.load_state_dict(self.average.network.state_dict())
+
+    def _start_from_exported(self, path: Path) -> None:
+        read_exported(path, self.network)
+        examples = batches(self.store, self._plan(), 0, self.settings.workers)
+        settling = itertools.islice(examples, SETTLING_BATCHES)
+        settle_normalisation(self.network, (batch.network_input() for batch in settling))
+        self.average = AveragedWeights(self.network)
 
     @property
     def seconds(self) -> float:

@@ -147,6 +147,7 @@ impl<'a> Line<'a> {
             label: Some(self.kind.to_owned()),
             box_px: Some(self.box_px()?),
             silhouette_px: None,
+            visible_px: None,
             truncated,
             occluded: occluded_share(occluded)?,
             center,

@@ -6,7 +6,7 @@ use crate::{
     sample::{Estimator, Sample},
     score::Figures,
 };
-use roadwatch_core::{Locator as _, Method, ObjectClass, RigCamera, rig::MeasuredFocal};
+use roadwatch_core::{Known, Locator as _, Method, ObjectClass, RigCamera, rig::MeasuredFocal};
 use roadwatch_locate::{
     CameraLocator, CarCategory, ClassSizes, GridSpec, HullSpec, LocationTable, LocatorError,
     LocatorOptions, SizeGroup, SizeStatistic, build_table, table::TableBuildError,
@@ -196,7 +196,7 @@ fn of_height(class: &ObjectClass, height_m: f64) -> ClassSizes {
 }
 
 fn judge(who: Estimator, seen: &SeenVehicle, locator: &CameraLocator) -> Sample {
-    let found = locator.locate(&seen.detection, None);
+    let found = locator.locate(&seen.detection, &Known::default());
     let answer = found.as_ref().map(|location| (location, None));
     Sample::judge(who, &seen.target, answer)
 }

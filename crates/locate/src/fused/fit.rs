@@ -2,11 +2,12 @@
 
 use super::{
     edges::{BOTTOM, Edges, LEFT, RIGHT, SeenBox},
+    level::Ground,
     normal::{Normal, inverse_and_determinant},
     solid::{Outline, Solid, Turned},
 };
-use nalgebra::{Matrix2, Matrix3, Matrix4, Matrix4x2, Vector2, Vector3};
-use roadwatch_core::SizeLwh;
+use nalgebra::{Matrix2, Matrix3, Matrix4, Matrix4x2, RowVector3, Vector2, Vector3};
+use roadwatch_core::{GroundReading, SizeLwh};
 use std::f64::consts::TAU;
 
 /// Gauss-Newton steps from the first guess, which may be off by a fifth; outlines are all but linear in the
@@ -22,14 +23,11 @@ const MOST_HIDDEN: f64 = 0.5;
 const OUTSIDE_STD_DEVS: f64 = 1.0;
 
 /// Where the camera is and what is known before a box comes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct View {
     pub(super) eye: Vector3<f64>,
     pub(super) optical_from_base: Matrix3<f64>,
-    /// The ground's height, metres of base_link.
-    pub(super) ground_z_m: f64,
-    /// Its standard deviation under the camera, metres, and with each metre of distance.
-    pub(super) ground_std: (f64, f64),
+    pub(super) ground: Ground,
     pub(super) hidden: HiddenShares,
 }
 
@@ -74,19 +72,14 @@ pub(super) struct Explanation {
     pub(super) covariance: Matrix2<f64>,
     /// Which heading of the shape.
     pub(super) heading: usize,
+    /// The edge that something hides, if any.
+    pub(super) hidden: Option<usize>,
     /// What the box adds to that heading, and the deviation that is left, radians.
     pub(super) turn_rad: f64,
     pub(super) turn_std_rad: f64,
 }
 
 impl View {
-    /// Of the ground's height under an object, metres.
-    #[inline(always)]
-    pub(super) fn ground_std_m(&self, distance_m: f64) -> f64 {
-        let (near, slope) = self.ground_std;
-        (near * near + slope * slope * distance_m * distance_m).sqrt()
-    }
-
     /// A place from which one more Gauss-Newton step hits: the best one for `heading`, sought from `start`.
     pub(super) fn approach(
         &self,
@@ -119,25 +112,24 @@ impl View {
         let radial = away / distance_m;
         let lateral = Vector2::new(-radial.y, radial.x);
         let axes = Matrix2::from_columns(&[radial, lateral]);
-        let middle = Vector3::new(place.x, place.y, self.ground_z_m) - self.eye;
+        let middle = Vector3::new(place.x, place.y, self.ground.height_m(place)) - self.eye;
         let middle = self.optical_from_base * middle;
         let outline = turned.outline(&middle, &self.optical_from_base)?;
-        let (covariance, turn) = self.covariance(shape, seen, &outline, (*yaw, distance_m));
+        let causes = self.causes(shape, &outline, (*yaw, place, distance_m));
+        let covariance = causes.covariance(seen);
         let (precision, determinant) = inverse_and_determinant(&covariance);
         let residual = seen.edges - outline.edges;
         let along = |direction: Vector2<f64>| {
-            Edges::from(
-                outline
-                    .slopes
-                    .map(|by| by.x * direction.x + by.y * direction.y),
-            )
+            let rise = self.ground.slopes.dot(&direction);
+            let slope = |by: RowVector3<f64>| by.x * direction.x + by.y * direction.y + by.z * rise;
+            Edges::from(outline.slopes.map(slope))
         };
         let by_place = Matrix4x2::from_columns(&[along(radial), along(lateral)]);
         let start_precision = (START_STD * distance_m).powi(-2);
         let from_start = axes.tr_mul(&(start - place));
         let normal = Normal::new(
             &precision,
-            (&by_place, &residual, &turn),
+            (&by_place, &residual, &causes.turn),
             (from_start, start_precision),
         );
         let longest = LONGEST_STEP * distance_m;
@@ -153,29 +145,65 @@ impl View {
             precision,
             density: determinant.sqrt().recip(),
             hidden: self.hidden,
+            raised: causes.ground,
             normal,
         })
     }
 
-    /// Of the box's edges about the outline's, and what one deviation of the heading within its bin does to
-    /// them.
-    #[inline(always)]
-    fn covariance(
+    /// What the box says of the ground by its best explanation; `None` where an edge is hidden.
+    pub(super) fn ground_reading(
         &self,
         shape: &Shape,
         seen: &SeenBox,
+        best: &Explanation,
+        start: Vector2<f64>,
+    ) -> Option<GroundReading> {
+        if best.hidden.is_some() {
+            return None;
+        }
+        let fit = self.fit(shape, best.heading, seen, (best.place, start))?;
+        let distance_m = (best.place - self.eye.xy()).norm();
+        let eye_height_m = self.eye.z - self.ground.height_m(best.place);
+        self.ground
+            .reading((best.place, distance_m), eye_height_m, fit.ground())
+    }
+
+    /// What one standard deviation of everything unknown does to the outline's edges.
+    #[inline(always)]
+    fn causes(
+        &self,
+        shape: &Shape,
         outline: &Outline,
-        (yaw, distance_m): ((f64, f64), f64),
-    ) -> (Matrix4<f64>, Edges) {
+        (yaw, place, distance_m): ((f64, f64), Vector2<f64>, f64),
+    ) -> Causes {
         let [length, width, height, turn] = shape.solid.shape_slopes(outline, yaw, shape.std_dev);
-        let turn = turn * shape.heading_std_rad;
-        let ground_std_m = self.ground_std_m(distance_m);
-        let ground = Edges::from(outline.slopes.map(|by| by.z * ground_std_m));
+        let ground_std_m = self.ground.std_m(place, distance_m);
+        Causes {
+            size: [length, width, height],
+            turn: turn * shape.heading_std_rad,
+            ground: Edges::from(outline.slopes.map(|by| by.z * ground_std_m)),
+        }
+    }
+}
+
+/// What one standard deviation of each does to the edges: of length, width and height, of the heading within
+/// its bin, and of the ground's height.
+struct Causes {
+    size: [Edges; 3],
+    turn: Edges,
+    ground: Edges,
+}
+
+impl Causes {
+    /// Of the box's edges about the outline's.
+    #[inline(always)]
+    fn covariance(&self, seen: &SeenBox) -> Matrix4<f64> {
         let mut covariance = Matrix4::from_diagonal(&seen.std_devs.component_mul(&seen.std_devs));
-        for cause in [length, width, height, turn, ground] {
+        let [length, width, height] = self.size;
+        for cause in [length, width, height, self.turn, self.ground] {
             covariance += cause * cause.transpose();
         }
-        (covariance, turn)
+        covariance
     }
 }
 
@@ -195,6 +223,8 @@ pub(super) struct Fit {
     /// Of the edges' Gaussian at its middle, without its powers of 2 pi.
     density: f64,
     hidden: HiddenShares,
+    /// What ground higher by one standard deviation does to the edges.
+    raised: Edges,
     normal: Normal,
 }
 
@@ -204,7 +234,7 @@ impl Fit {
     pub(super) fn explanations(&self, seen: &SeenBox) -> impl Iterator<Item = Explanation> {
         let HiddenShares { side, foot } = self.hidden;
         let visible = 1.0 - 2.0 * side - foot;
-        let whole = self.explain(&self.normal, visible * self.density).0;
+        let whole = self.explain(&self.normal, visible * self.density, None).0;
         let hidden = [
             (LEFT, 1.0, side, seen.width()),
             (RIGHT, -1.0, side, seen.width()),
@@ -217,7 +247,7 @@ impl Fit {
             // One factor of the density of four Gaussian edges gives way to a uniform one.
             let density = self.density * (TAU / own).sqrt() / most;
             let normal = self.normal.without(edge, own);
-            let (explanation, step) = self.explain(&normal, share * density);
+            let (explanation, step) = self.explain(&normal, share * density, Some(edge));
             let left_over = self.residual[edge] - (self.by_place.row(edge) * step).x;
             (outside..most)
                 .contains(&(left_over * inward))
@@ -226,9 +256,24 @@ impl Fit {
         std::iter::once(whole).chain(hidden)
     }
 
-    /// The best place by these edges, and the step that leads there.
+    /// Mean and variance of the ground's height by all four edges, in standard deviations of what was expected
+    /// of it.
+    pub(super) fn ground(&self) -> (f64, f64) {
+        self.normal.of_cause(
+            &self.precision,
+            (&self.by_place, &self.residual),
+            &self.raised,
+        )
+    }
+
+    /// The best place without a hidden edge, and the step that leads there.
     #[inline(always)]
-    fn explain(&self, normal: &Normal, density: f64) -> (Explanation, Vector2<f64>) {
+    fn explain(
+        &self,
+        normal: &Normal,
+        density: f64,
+        hidden: Option<usize>,
+    ) -> (Explanation, Vector2<f64>) {
         let solved = normal.solve();
         let explanation = Explanation {
             scale: density * solved.determinant.sqrt(),
@@ -236,6 +281,7 @@ impl Fit {
             place: self.place + self.axes * solved.step,
             covariance: self.axes * solved.covariance * self.axes.transpose(),
             heading: self.heading,
+            hidden,
             turn_rad: solved.turn * self.heading_std_rad,
             turn_std_rad: solved.turn_variance.max(0.0).sqrt() * self.heading_std_rad,
         };

@@ -37,6 +37,13 @@ impl Mixture {
         (sum > 0.0).then_some(Self { weighted })
     }
 
+    /// The likeliest of all.
+    pub(super) fn best(&self) -> Option<&Explanation> {
+        let weighted = self.weighted.iter();
+        let best = weighted.max_by(|a, b| a.0.total_cmp(&b.0));
+        best.map(|(_, explanation)| explanation)
+    }
+
     /// Mean and covariance of the place, metres.
     pub(super) fn place(&self) -> (Vector2<f64>, Matrix2<f64>) {
         let parts = || self.weighted.iter();

@@ -77,6 +77,23 @@ impl Normal {
         }
     }
 
+    /// Mean and variance of a cause that is part of the covariance, in its standard deviations, given what one
+    /// of them does to the edges.
+    pub(super) fn of_cause(
+        &self,
+        precision: &Matrix4<f64>,
+        (by_place, residual): (&Matrix4x2<f64>, &Edges),
+        cause: &Edges,
+    ) -> (f64, f64) {
+        let weighted = precision * cause;
+        let with_place = by_place.tr_mul(&weighted);
+        let [[a, b], [_, d]] = self.information.data.0;
+        let covariance = Matrix2::new(d, -b, -b, a) / (a * d - b * b);
+        let mean = weighted.dot(residual) - with_place.dot(&(covariance * self.pull));
+        let known = with_place.dot(&(covariance * with_place));
+        (mean, 1.0 - weighted.dot(cause) + known)
+    }
+
     #[inline(always)]
     pub(super) fn solve(&self) -> Solved {
         let [[a, b], [_, d]] = self.information.data.0;

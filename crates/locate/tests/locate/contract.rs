@@ -2,7 +2,7 @@
 
 use crate::common::{camera, car_ahead, car_hull, cars, detection, silhouettes};
 use proptest::prelude::*;
-use roadwatch_core::{BoxPx, Location, Locator, Method, Prior, RigCamera};
+use roadwatch_core::{BoxPx, Known, Location, Locator, Method, Prior, RigCamera};
 use roadwatch_locate::{
     BoxNoise, CameraLocator, CarCategory, ClassSizes, GridSpec, GroundPose, LocatorError,
     LocatorOptions, SizeStatistic, build_table,
@@ -68,7 +68,7 @@ proptest! {
         let [x_min, y_min, x_max, y_max] = edges;
         let seen = detection(class, BoxPx { x_min, y_min, x_max, y_max });
         for (locator, method) in LOCATORS.iter().zip(Method::ALL) {
-            if let Some(location) = locator.locate(&seen, None) {
+            if let Some(location) = locator.locate(&seen, &Known::default()) {
                 let raised = class == "traffic light";
                 let fallback = match method {
                     Method::Table => class != "car",
@@ -86,7 +86,7 @@ fn a_car_ahead_is_where_it_stands() {
     for (locator, method) in LOCATORS.iter().zip(Method::ALL) {
         for loc_y_m in [9.0, 15.0, 30.0, 45.0] {
             let location = locator
-                .locate(&car_ahead(&CAMERA, loc_y_m), None)
+                .locate(&car_ahead(&CAMERA, loc_y_m), &Known::default())
                 .expect("located");
             check(&location, method);
             let error_m = (location.position.x() - 0.85 - loc_y_m).abs();
@@ -102,7 +102,7 @@ fn a_car_ahead_is_where_it_stands() {
 /// Standard deviation of the position, all axes together, metres.
 fn spread_m(locator: &CameraLocator, loc_y_m: f64) -> f64 {
     let location = locator
-        .locate(&car_ahead(&CAMERA, loc_y_m), None)
+        .locate(&car_ahead(&CAMERA, loc_y_m), &Known::default())
         .expect("located");
     location.covariance.matrix.trace().sqrt()
 }
@@ -165,7 +165,7 @@ fn uncertainty_grows_with_box_noise() {
 fn most_uncertainty_lies_along_the_ray() {
     for (locator, method) in LOCATORS.iter().zip(Method::ALL) {
         let location = locator
-            .locate(&car_ahead(&CAMERA, 30.0), None)
+            .locate(&car_ahead(&CAMERA, 30.0), &Known::default())
             .expect("located");
         let covariance = location.covariance.matrix;
         assert!(
@@ -177,7 +177,7 @@ fn most_uncertainty_lies_along_the_ray() {
 
 fn prior(age: Duration) -> Prior {
     let location = LOCATORS[1]
-        .locate(&car_ahead(&CAMERA, 20.0), None)
+        .locate(&car_ahead(&CAMERA, 20.0), &Known::default())
         .expect("located");
     Prior {
         location,
@@ -194,9 +194,19 @@ fn without_an_answer_a_young_location_is_held_and_an_old_one_is_not() {
     };
     let seen = detection("car", broken);
     for locator in LOCATORS.iter() {
-        assert_eq!(locator.locate(&seen, None), None);
+        assert_eq!(locator.locate(&seen, &Known::default()), None);
         let ages = [10, 100, 400].map(Duration::from_millis);
-        let held = ages.map(|age| locator.locate(&seen, Some(&prior(age))).expect("held"));
+        let held = ages.map(|age| {
+            locator
+                .locate(
+                    &seen,
+                    &Known {
+                        object: Some(prior(age)),
+                        ..Known::default()
+                    },
+                )
+                .expect("held")
+        });
         let spreads = held.each_ref().map(|one| one.covariance.matrix.trace());
         assert!(spreads.is_sorted_by(|young, old| young < old));
         for one in held {
@@ -205,7 +215,13 @@ fn without_an_answer_a_young_location_is_held_and_an_old_one_is_not() {
             assert_eq!(one.method, Method::TriangleFy);
         }
         assert_eq!(
-            locator.locate(&seen, Some(&prior(Duration::from_secs(2)))),
+            locator.locate(
+                &seen,
+                &Known {
+                    object: Some(prior(Duration::from_secs(2))),
+                    ..Known::default()
+                }
+            ),
             None
         );
     }
@@ -216,7 +232,13 @@ fn a_fresh_answer_is_never_held() {
     for (locator, method) in LOCATORS.iter().zip(Method::ALL) {
         let seen = car_ahead(&CAMERA, 12.0);
         let location = locator
-            .locate(&seen, Some(&prior(Duration::ZERO)))
+            .locate(
+                &seen,
+                &Known {
+                    object: Some(prior(Duration::ZERO)),
+                    ..Known::default()
+                },
+            )
             .expect("located");
         check(&location, method);
     }
@@ -230,12 +252,12 @@ fn beyond_the_greatest_range_there_is_no_answer() {
             ..options(method)
         };
         assert_eq!(
-            locator(short.clone()).locate(&car_ahead(&CAMERA, 40.0), None),
+            locator(short.clone()).locate(&car_ahead(&CAMERA, 40.0), &Known::default()),
             None
         );
         assert!(
             locator(short)
-                .locate(&car_ahead(&CAMERA, 10.0), None)
+                .locate(&car_ahead(&CAMERA, 10.0), &Known::default())
                 .is_some()
         );
     }
@@ -245,9 +267,12 @@ fn beyond_the_greatest_range_there_is_no_answer() {
 fn the_ground_has_nothing_above_the_horizon() {
     let sky = BoxPx::new(400.0, 20.0, 440.0, 60.0).expect("a box");
     let ground = &LOCATORS[3];
-    assert_eq!(ground.locate(&detection("car", sky), None), None);
+    assert_eq!(
+        ground.locate(&detection("car", sky), &Known::default()),
+        None
+    );
     let light = ground
-        .locate(&detection("traffic light", sky), None)
+        .locate(&detection("traffic light", sky), &Known::default())
         .expect("by triangle");
     assert_eq!(light.method, Method::TriangleFy);
 }
@@ -255,7 +280,11 @@ fn the_ground_has_nothing_above_the_horizon() {
 #[test]
 fn eq_2_by_fy_and_by_an_equal_measured_focal_agree() {
     let seen = car_ahead(&CAMERA, 25.0);
-    let [measured, fy] = [0, 1].map(|at: usize| LOCATORS[at].locate(&seen, None).expect("located"));
+    let [measured, fy] = [0, 1].map(|at: usize| {
+        LOCATORS[at]
+            .locate(&seen, &Known::default())
+            .expect("located")
+    });
     assert_eq!(measured.position, fy.position);
     let expected_m = 1.5 * 985.0 / f64::from(seen.box_px.height_px());
     assert!((fy.depth_m - expected_m).abs() < 1e-9);
@@ -304,6 +333,13 @@ fn a_box_that_looks_like_no_row_has_no_table_location() {
         ..car
     };
     let table = &LOCATORS[2];
-    assert!(table.locate(&detection("car", car), None).is_some());
-    assert_eq!(table.locate(&detection("car", speck), None), None);
+    assert!(
+        table
+            .locate(&detection("car", car), &Known::default())
+            .is_some()
+    );
+    assert_eq!(
+        table.locate(&detection("car", speck), &Known::default()),
+        None
+    );
 }

@@ -3,7 +3,7 @@
 use crate::common::{Random, camera, car_hull, detection, silhouettes};
 use nalgebra::Vector2;
 use roadwatch_core::{
-    BoxPx, Heading, Location, Locator as _, Method, Prior, RigCamera, SizeLwh,
+    BoxPx, Heading, Known, Location, Locator as _, Method, Prior, RigCamera, SizeLwh,
     space::{BaseLink, Point},
 };
 use roadwatch_locate::{BoxNoise, CameraLocator, GroundPose, LocatorOptions};
@@ -96,7 +96,7 @@ fn a_car_of_the_expected_size_is_found_where_it_stands_in_any_heading() {
             continue;
         };
         let location = locator
-            .locate(&detection("car", car.box_px), None)
+            .locate(&detection("car", car.box_px), &Known::default())
             .expect("a place");
         off.push(off_m(&location, &car) / range_m);
         turned.push(nearest_heading_rad(&location, yaw_rad).to_degrees());
@@ -147,7 +147,8 @@ fn the_covariance_is_what_the_errors_are() {
             y_max + stray(),
         ];
         let seen = hidden(edges, &mut random);
-        let Some(location) = seen.and_then(|seen| locator.locate(&detection("car", seen), None))
+        let Some(location) =
+            seen.and_then(|seen| locator.locate(&detection("car", seen), &Known::default()))
         else {
             continue;
         };
@@ -198,7 +199,7 @@ fn a_hidden_foot_is_recognised_by_disagreement() {
     };
     let off = |method| {
         let location = at(method)
-            .locate(&detection("car", box_px), None)
+            .locate(&detection("car", box_px), &Known::default())
             .expect("a place");
         off_m(&location, &car)
     };
@@ -228,7 +229,7 @@ fn what_the_border_cuts_off_is_not_taken_for_the_object() {
     let (box_px, share) = over_ground.clip(whole).expect("partly in view");
     assert!((0.3..0.8).contains(&share), "{share}");
     let location = locator
-        .locate(&detection("car", box_px), None)
+        .locate(&detection("car", box_px), &Known::default())
         .expect("a place");
     let error = Vector2::new(
         foot.x() + 9.0 - location.position.x(),
@@ -248,7 +249,10 @@ fn what_the_border_cuts_off_is_not_taken_for_the_object() {
 fn a_box_over_the_whole_image_says_nothing() {
     let locator = fused(&camera(700.0, 1.0, 0.0));
     let everything = BoxPx::new(0.0, 0.0, 960.0, 540.0).expect("a box");
-    assert_eq!(locator.locate(&detection("car", everything), None), None);
+    assert_eq!(
+        locator.locate(&detection("car", everything), &Known::default()),
+        None
+    );
 }
 
 #[test]
@@ -257,7 +261,7 @@ fn a_known_heading_settles_which_of_the_possible_ones_it_is() {
     let locator = fused(&camera);
     let car = car(&camera, (20.0, 0.1), 0.7).expect("in view");
     let seen = detection("car", car.box_px);
-    let alone = locator.locate(&seen, None).expect("a place");
+    let alone = locator.locate(&seen, &Known::default()).expect("a place");
     let prior = Prior {
         location: alone.clone(),
         heading: Some(Heading {
@@ -266,7 +270,15 @@ fn a_known_heading_settles_which_of_the_possible_ones_it_is() {
         }),
         age: Duration::from_millis(100),
     };
-    let known = locator.locate(&seen, Some(&prior)).expect("a place");
+    let known = locator
+        .locate(
+            &seen,
+            &Known {
+                object: Some(prior),
+                ..Known::default()
+            },
+        )
+        .expect("a place");
     let weight = |location: &Location| {
         let near = location.headings.iter();
         let near = near.filter(|of| apart_rad(of.heading.yaw_rad, car.yaw_rad) < 0.3);
@@ -289,6 +301,12 @@ fn a_greatest_range_shorter_than_the_object_places_nothing() {
     };
     let locator = CameraLocator::new(&camera, 0.0, options).expect("any camera");
     let car = car(&camera, (15.0, 0.0), 1.2).expect("in view");
-    assert_eq!(locator.locate(&detection("car", car.box_px), None), None);
-    assert_eq!(locator.locate(&detection("bus", car.box_px), None), None);
+    assert_eq!(
+        locator.locate(&detection("car", car.box_px), &Known::default()),
+        None
+    );
+    assert_eq!(
+        locator.locate(&detection("bus", car.box_px), &Known::default()),
+        None
+    );
 }

@@ -4,8 +4,8 @@
 
 use roadwatch_core::{
     BoxPx, CameraId, Clock, DecodeError, DecodeImage, DetectError, Detection, Detector, Frame,
-    FrameSource, Image, ImageSize, Location, Locator, ObjectClass, Oriented, Output, PerFrame,
-    Pixels, Prior, Reidentifier, Score, Sink, SinkError, SourceError, Timestamp, Track, TrackId,
+    FrameSource, Image, ImageSize, Known, Location, Locator, ObjectClass, Oriented, Output,
+    PerFrame, Pixels, Reidentifier, Score, Sink, SinkError, SourceError, Timestamp, Track, TrackId,
 };
 use roadwatch_pipeline::{
     NamedSink, Outcome, Overload, PipelineOptions, Running, Stages, perceive::Perceiver, start,
@@ -131,7 +131,7 @@ impl Detector for OneBoxDetector {
 pub(crate) struct Nowhere;
 
 impl Locator for Nowhere {
-    fn locate(&self, _: &Detection, _: Option<&Prior>) -> Option<Location> {
+    fn locate(&self, _: &Detection, _: &Known) -> Option<Location> {
         None
     }
 }
@@ -139,8 +139,8 @@ impl Locator for Nowhere {
 pub(crate) struct NoMemory;
 
 impl Reidentifier for NoMemory {
-    fn recall(&self, seen: &PerFrame<Detection>) -> Vec<Option<Prior>> {
-        vec![None; seen.items.len()]
+    fn recall(&self, seen: &PerFrame<Detection>) -> Vec<Known> {
+        vec![Known::default(); seen.items.len()]
     }
 
     fn commit(&mut self, seen: PerFrame<Oriented>, _: &[Detection]) -> PerFrame<Track> {

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use roadwatch_core::{
     BoxPx, CameraId, Detection, Frame, Heading, HeadingCandidates, Image, ImageSize, Located,
     Location, Method, ObjectClass, Oriented, PerFrame, Pixels, Prior, Reidentifier, Score, SizeLwh,
-    Timestamp, TrackId,
+    SlopeEvidence, Timestamp, TrackId,
     space::{Covariance, Point},
 };
 use roadwatch_reid::LeftToRight;
@@ -49,6 +49,7 @@ fn measured(x_m: f64) -> Location {
         },
         method: Method::Ground,
         headings: HeadingCandidates::default(),
+        ground: None,
         held: false,
     }
 }
@@ -58,6 +59,7 @@ fn oriented(detection: Detection, location: Location) -> Oriented {
         located: Located {
             detection,
             location,
+            slopes: SlopeEvidence::default(),
         },
         heading: None,
     }
@@ -100,13 +102,24 @@ fn commit(
     tracks.items.iter().map(|track| track.id).collect()
 }
 
+/// Remembers nobody yet.
+fn left_to_right() -> LeftToRight {
+    LeftToRight::new(LeftToRight::DEFAULT_GROUND_MEMORY)
+}
+
+/// What is remembered of the objects themselves.
+fn priors(reid: &LeftToRight, seen: &PerFrame<Detection>) -> Vec<Option<Prior>> {
+    let known = reid.recall(seen).into_iter();
+    known.map(|known| known.object).collect()
+}
+
 fn remembered_x_m(prior: &Option<Prior>) -> Option<f64> {
     prior.as_ref().map(|prior| prior.location.position.x())
 }
 
 #[test]
 fn the_nth_from_the_left_keeps_the_nth_identity_and_the_given_order() {
-    let mut reid = LeftToRight::new();
+    let mut reid = left_to_right();
     let first = commit(&mut reid, 2, 0, &cars(&[300.0, 100.0, 200.0]));
     let base = 20_000;
     assert_eq!(first, [TrackId(base + 2), TrackId(base), TrackId(base + 1)]);
@@ -116,33 +129,33 @@ fn the_nth_from_the_left_keeps_the_nth_identity_and_the_given_order() {
 
 #[test]
 fn recall_gives_the_nth_the_nth_of_the_last_frame_of_the_same_camera() {
-    let mut reid = LeftToRight::new();
+    let mut reid = left_to_right();
     commit(&mut reid, 0, 1_000, &cars(&[300.0, 100.0]));
     commit(&mut reid, 1, 1_050, &cars(&[500.0]));
-    let priors = reid.recall(&seen(0, 1_100, &cars(&[400.0, 320.0, 90.0])));
-    let places: Vec<_> = priors.iter().map(remembered_x_m).collect();
+    let recalled = priors(&reid, &seen(0, 1_100, &cars(&[400.0, 320.0, 90.0])));
+    let places: Vec<_> = recalled.iter().map(remembered_x_m).collect();
     assert_eq!(places, [None, Some(300.0), Some(100.0)]);
     assert_eq!(
-        priors[1].as_ref().map(|prior| prior.age),
+        recalled[1].as_ref().map(|prior| prior.age),
         Some(Duration::from_millis(100))
     );
-    assert!(reid.recall(&seen(7, 0, &cars(&[1.0])))[0].is_none());
+    assert!(priors(&reid, &seen(7, 0, &cars(&[1.0])))[0].is_none());
 }
 
 #[test]
 fn another_class_is_somebody_else() {
-    let mut reid = LeftToRight::new();
+    let mut reid = left_to_right();
     commit(&mut reid, 0, 0, &cars(&[100.0]));
-    let priors = reid.recall(&seen(0, 100, &[detection("person", 100.0)]));
+    let priors = priors(&reid, &seen(0, 100, &[detection("person", 100.0)]));
     assert_eq!(priors, [None]);
 }
 
 #[test]
 fn a_held_location_keeps_the_stamp_it_was_measured_at() {
-    let mut reid = LeftToRight::new();
+    let mut reid = left_to_right();
     commit(&mut reid, 0, 0, &cars(&[100.0]));
     for millis in [100, 200, 300] {
-        let priors = reid.recall(&seen(0, millis, &cars(&[100.0])));
+        let priors = priors(&reid, &seen(0, millis, &cars(&[100.0])));
         let prior = priors[0].as_ref().expect("remembered");
         assert_eq!(prior.age, Duration::from_millis(millis.unsigned_abs()));
         assert!(!prior.location.held);
@@ -164,7 +177,7 @@ fn a_held_location_keeps_the_stamp_it_was_measured_at() {
 
 #[test]
 fn the_last_heading_stays_until_there_is_a_newer_one() {
-    let mut reid = LeftToRight::new();
+    let mut reid = left_to_right();
     let heading = Heading {
         yaw_rad: 1.0,
         std_dev_rad: 0.1,
@@ -181,7 +194,7 @@ fn the_last_heading_stays_until_there_is_a_newer_one() {
         &[],
     );
     commit(&mut reid, 0, 100, &cars(&[101.0]));
-    let priors = reid.recall(&seen(0, 200, &cars(&[102.0])));
+    let priors = priors(&reid, &seen(0, 200, &cars(&[102.0])));
     assert_eq!(
         priors[0].as_ref().and_then(|prior| prior.heading),
         Some(heading)
@@ -190,15 +203,15 @@ fn the_last_heading_stays_until_there_is_a_newer_one() {
 
 #[test]
 fn an_empty_frame_forgets_everybody_and_a_stamp_from_the_past_is_no_age() {
-    let mut reid = LeftToRight::new();
+    let mut reid = left_to_right();
     commit(&mut reid, 0, 1_000, &cars(&[100.0]));
-    let early = reid.recall(&seen(0, 900, &cars(&[100.0])));
+    let early = priors(&reid, &seen(0, 900, &cars(&[100.0])));
     assert_eq!(
         early[0].as_ref().map(|prior| prior.age),
         Some(Duration::ZERO)
     );
     commit(&mut reid, 0, 1_100, &[]);
-    assert_eq!(reid.recall(&seen(0, 1_200, &cars(&[100.0]))), [None]);
+    assert_eq!(priors(&reid, &seen(0, 1_200, &cars(&[100.0]))), [None]);
 }
 
 /// Whole pixels, so that equal middles occur.
@@ -209,7 +222,7 @@ fn lefts() -> impl Strategy<Value = Vec<f32>> {
 proptest! {
     #[test]
     fn identities_are_unique_and_ascend_from_left_to_right(lefts in lefts(), camera in 0..255_u8) {
-        let ids = commit(&mut LeftToRight::new(), camera, 0, &cars(&lefts));
+        let ids = commit(&mut left_to_right(), camera, 0, &cars(&lefts));
         prop_assert_eq!(ids.iter().collect::<BTreeSet<_>>().len(), lefts.len());
         for (a, id_a) in lefts.iter().zip(&ids) {
             for (b, id_b) in lefts.iter().zip(&ids) {
@@ -222,13 +235,13 @@ proptest! {
 
     #[test]
     fn the_same_frame_again_recalls_each_object_as_itself(lefts in lefts()) {
-        let mut reid = LeftToRight::new();
+        let mut reid = left_to_right();
         let mut items = Vec::new();
         for (number, one) in cars(&lefts).into_iter().enumerate() {
             items.push(oriented(one, measured(number as f64)));
         }
         reid.commit(PerFrame { frame: frame(0, 0), items }, &[]);
-        let priors = reid.recall(&seen(0, 0, &cars(&lefts)));
+        let priors = priors(&reid, &seen(0, 0, &cars(&lefts)));
         for (number, prior) in priors.iter().enumerate() {
             prop_assert_eq!(remembered_x_m(prior), Some(number as f64));
         }
@@ -237,7 +250,7 @@ proptest! {
 
 #[test]
 fn what_got_no_location_keeps_its_place_in_the_row() {
-    let mut reid = LeftToRight::new();
+    let mut reid = left_to_right();
     let row = cars(&[100.0, 200.0, 300.0]);
     let located = PerFrame {
         frame: frame(0, 0),
@@ -255,7 +268,7 @@ fn what_got_no_location_keeps_its_place_in_the_row() {
             .collect::<Vec<_>>(),
         [1, 2]
     );
-    let priors = reid.recall(&seen(0, 100, &row));
+    let priors = priors(&reid, &seen(0, 100, &row));
     let places: Vec<_> = priors
         .iter()
         .map(|prior| prior.as_ref().map(|prior| prior.location.range_m))

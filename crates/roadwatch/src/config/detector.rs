@@ -46,6 +46,7 @@ pub(super) fn read(detector: &Reader<'_, '_>) -> Option<DetectorConfig> {
         iou_threshold: detector
             .number("iou_threshold", 0.0..=1.0)
             .unwrap_or(DEFAULT_IOU_THRESHOLD) as f32,
+        exclusive_classes: detector.texts("exclusive_classes").unwrap_or_default(),
         max_detections: detector
             .integer("max_detections", 1..=10_000)
             .unwrap_or(DEFAULT_MAX_DETECTIONS) as usize,

@@ -7,6 +7,7 @@ use roadwatch_locate::{
     HoldOptions, HullSpec, LocationTable, LocatorError, LocatorOptions, MountNoise, QueryDistance,
     SizeGroup, SizeStatistic, SplitMode, Standing, TableOptions, Weight, build_table,
 };
+use roadwatch_reid::LeftToRight;
 use std::{sync::Arc, time::Duration};
 
 /// The class that look-up tables are built for: the one whose size is known best.
@@ -27,6 +28,8 @@ pub struct LocateConfig {
     pub options: LocatorOptions,
     /// The ground that tables built at start cover.
     pub grid: GridSpec,
+    /// About how long the ground's slopes are remembered; zero learns nothing of them.
+    pub ground_memory: Duration,
 }
 
 impl LocateConfig {
@@ -111,6 +114,7 @@ pub(super) fn read(locate: &Reader<'_, '_>) -> LocateConfig {
     noise.finish();
     let ground = locate.table("ground");
     options.mount_noise = mount_noise(&ground);
+    let ground_memory = ground.number("memory_secs", 0.0..=600.0);
     ground.finish();
     let hidden = locate.table("hidden");
     options.hidden = hidden_shares(&hidden);
@@ -123,6 +127,8 @@ pub(super) fn read(locate: &Reader<'_, '_>) -> LocateConfig {
         method: read_method(locate).unwrap_or(Method::Fused),
         options,
         grid,
+        ground_memory: ground_memory
+            .map_or(LeftToRight::DEFAULT_GROUND_MEMORY, Duration::from_secs_f64),
     }
 }
 
@@ -214,6 +220,9 @@ fn mount_noise(table: &Reader<'_, '_>) -> MountNoise {
         ground_m: table
             .number("height_std_dev_m", 0.0..=10.0)
             .unwrap_or(defaults.ground_m),
+        local_slope_rad: table
+            .number("local_slope_std_dev_deg", 0.0..=45.0)
+            .map_or(defaults.local_slope_rad, f64::to_radians),
     }
 }
 

@@ -5,7 +5,7 @@ use roadwatch_core::{
     BoxPx, CameraId, CameraModel, CameraName, Detection, Distortion, Frame, Heading,
     HeadingCandidates, Image, ImageSize, Intrinsics, Located, Location, Method, Mount, ObjectClass,
     Oriented, Output, PerFrame, Perceived, Pixels, Rig, RigCamera, Scene, SceneObject, Score,
-    SizeLwh, Timestamp, Track, TrackId,
+    SizeLwh, SlopeEvidence, Timestamp, Track, TrackId,
     space::{Covariance, Point},
 };
 use std::{f64::consts::PI, sync::Arc, time::Instant};
@@ -115,6 +115,7 @@ fn track(id: u64, class: &str, yaw_rad: Option<f64>) -> Track {
         },
         method: Method::Ground,
         headings: HeadingCandidates::default(),
+        ground: None,
         held: false,
     };
     Track {
@@ -123,6 +124,7 @@ fn track(id: u64, class: &str, yaw_rad: Option<f64>) -> Track {
             located: Located {
                 detection: detection(class),
                 location,
+                slopes: SlopeEvidence::default(),
             },
             heading: yaw_rad.map(|yaw_rad| Heading {
                 yaw_rad,
