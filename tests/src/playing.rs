@@ -87,6 +87,7 @@ pub(crate) fn stages(
         detector,
         perceiver: Perceiver {
             locators,
+            rotation: None,
             reidentifier: Box::new(LeftToRight::new(LeftToRight::DEFAULT_GROUND_MEMORY)),
         },
         sinks,

@@ -27,8 +27,8 @@ pub use error_chain::error_chain;
 pub use frame::{CameraId, DecodeError, DecodeImage, Frame, Image, PerFrame, Pixels};
 pub use ground::{GroundReading, SlopeEvidence};
 pub use location::{
-    Heading, HeadingCandidate, HeadingCandidates, Known, Located, Location, Method, Oriented,
-    Prior, SizeLwh,
+    Heading, HeadingCandidate, HeadingCandidates, KeptHeading, Known, Located, Location, Method,
+    Oriented, Prior, Rotation, SeenComponent, SizeLwh,
 };
 pub use mount::Mount;
 pub use name::CameraName;
@@ -36,7 +36,7 @@ pub use object_class::ObjectClass;
 pub use rig::{MeasuredFocal, Rig, RigCamera};
 pub use scene::{Scene, SceneObject, Track, TrackId};
 pub use seam::{
-    Clock, DetectError, Detector, FrameSource, Locator, Output, Perceived, Reidentifier, Sink,
-    SinkError, SourceError,
+    Clock, DetectError, Detector, FrameSource, Locator, Output, Perceived, Reidentifier,
+    RotationError, RotationEstimator, Sink, SinkError, SourceError,
 };
 pub use time::Timestamp;

@@ -1,12 +1,13 @@
 //! Where an object is: position, covariance, and how we know.
 
 use crate::{
+    camera_model::Pixel,
     detection::Detection,
     ground::{GroundReading, SlopeEvidence},
     space::{BaseLink, Covariance, Point},
 };
 use arrayvec::ArrayVec;
-use std::{fmt, time::Duration};
+use std::{f64::consts::PI, fmt, sync::Arc, time::Duration};
 
 /// Length, width and height of an object, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,9 +109,38 @@ pub struct Prior {
     /// The last location that was measured, not held.
     pub location: Location,
     /// The last heading; `None` when none was ever found.
-    pub heading: Option<Heading>,
+    pub heading: Option<KeptHeading>,
     /// Capture time since `location` was measured.
     pub age: Duration,
+}
+
+/// A heading found in an earlier frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KeptHeading {
+    /// The heading, its deviation grown by what may have turned since.
+    pub heading: Heading,
+    /// Capture time since it was found.
+    pub age: Duration,
+}
+
+/// A key component of an object, such as a tyre or a number plate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SeenComponent {
+    /// What it is, by the name that the model has for it.
+    pub name: Arc<str>,
+    /// Where it is in the image.
+    pub position_px: Pixel,
+    /// How sure the model is, 0 to 1.
+    pub score: f32,
+}
+
+/// What one frame says of an object's direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rotation {
+    /// Which way it points.
+    pub heading: Heading,
+    /// What was found of it.
+    pub components: Vec<SeenComponent>,
 }
 
 /// Which way an object points, in base_link axes.
@@ -118,8 +148,19 @@ pub struct Prior {
 pub struct Heading {
     /// About z, counter-clockwise, zero along the vehicle's forward axis (REP-103), radians in -pi..=pi.
     pub yaw_rad: f64,
-    /// Standard deviation, radians.
+    /// Standard deviation, radians, if it is not turned round.
     pub std_dev_rad: f64,
+    /// How likely the object points the other way instead, 0 to 0.5: front and back look much alike.
+    pub flip_probability: f64,
+}
+
+impl Heading {
+    /// Variance of the yaw, square radians, the chance of a flip included.
+    #[must_use]
+    pub fn variance_rad2(&self) -> f64 {
+        let flipped = self.flip_probability;
+        self.std_dev_rad.powi(2) + flipped * (1.0 - flipped) * PI * PI
+    }
 }
 
 /// One heading that a box's shape allows.
@@ -153,6 +194,9 @@ pub struct Located {
 pub struct Oriented {
     /// What and where.
     pub located: Located,
-    /// `None` when nothing says which way it points; never invented.
-    pub heading: Option<Heading>,
+    /// `None` when nothing says which way it points; never invented. One of an earlier frame where this one was
+    /// not asked or gave none.
+    pub heading: Option<KeptHeading>,
+    /// The key components that were found in this frame.
+    pub components: Vec<SeenComponent>,
 }

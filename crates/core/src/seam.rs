@@ -3,7 +3,7 @@
 use crate::{
     detection::Detection,
     frame::{CameraId, DecodeError, Frame, PerFrame},
-    location::{Known, Location, Oriented},
+    location::{Heading, Known, Located, Location, Oriented, Rotation},
     scene::{Scene, Track},
     time::Timestamp,
 };
@@ -74,6 +74,39 @@ pub trait Detector: Send + Sync {
 pub trait Locator: Send {
     /// `None` when neither the box nor an earlier location gives one.
     fn locate(&self, detection: &Detection, known: &Known) -> Option<Location>;
+}
+
+/// No heading could be estimated in a frame. Its objects keep what they had.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no headings: {reason}")]
+pub struct RotationError {
+    reason: String,
+}
+
+impl RotationError {
+    /// An error that says why.
+    pub fn new(reason: impl Into<String>) -> Self {
+        Self {
+            reason: reason.into(),
+        }
+    }
+}
+
+/// Says which way located objects point. One for the rig; remembers nothing.
+pub trait RotationEstimator: Send {
+    /// Whether it has anything to say of such an object; what it does not want costs no share of the budget.
+    fn wants(&self, located: &Located) -> bool;
+
+    /// One answer per object, in order, given the heading each had with its deviation now; `None` where the image
+    /// shows nothing of one.
+    ///
+    /// # Errors
+    /// When the frame gives no headings at all: its image is gone, or the network failed.
+    fn estimate(
+        &mut self,
+        frame: &Frame,
+        objects: &[(&Located, Option<Heading>)],
+    ) -> Result<Vec<Option<Rotation>>, RotationError>;
 }
 
 /// Says who is who; the only memory, of objects and of the ground they stand on.

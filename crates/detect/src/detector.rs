@@ -7,12 +7,12 @@ use crate::{
     nms::{Candidate, suppress},
     options::{DetectorError, DetectorOptions, class_names, kinds, thresholds},
     rhythm::Rhythm,
-    runtime::Runtime,
     workspace::{Workspace, Workspaces},
 };
 use roadwatch_core::{
     DetectError, Detection, Detector, Frame, ImageSize, ObjectClass, PerFrame, Score,
 };
+use roadwatch_onnx::Runtime;
 use std::{
     sync::{Arc, Mutex, PoisonError, RwLock},
     time::{Duration, Instant},

@@ -12,7 +12,6 @@ pub mod network;
 pub mod nms;
 pub mod options;
 mod rhythm;
-pub mod runtime;
 mod workspace;
 
 pub use class_names::COCO_CLASSES;
@@ -20,4 +19,4 @@ pub use detector::YoloDetector;
 pub use head::{Family, Head, UnknownHead};
 pub use network::{Network, NetworkError, NetworkOptions};
 pub use options::{ClassFilter, DetectorError, DetectorOptions};
-pub use runtime::{Runtime, RuntimeError};
+pub use roadwatch_onnx::{Runtime, RuntimeError};

@@ -4,23 +4,18 @@ use crate::{
     class_names,
     head::{Head, UnknownHead},
     letterbox::Letterbox,
-    runtime::Runtime,
 };
 use ort::{
-    session::{Session, builder::GraphOptimizationLevel},
+    session::Session,
     value::{TensorElementType, TensorRef, ValueType},
 };
 use roadwatch_core::ImageSize;
+use roadwatch_onnx::{Runtime, SessionOptions, open_file};
 use std::path::{Path, PathBuf};
 
 const CHANNELS: i64 = 3;
 /// A feature map of the coarsest stride has whole cells only in multiples of this, pixels.
 const SIDE_MULTIPLE_PX: u32 = 32;
-
-/// ONNX Runtime's dynamic cost model, at the value its documentation suggests: threads take shrinking shares
-/// of each operator instead of equal ones, so that a core which decodes the next image in between does not
-/// hold up the others.
-const DYNAMIC_BLOCK_BASE: u32 = 4;
 
 /// How a model is run.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -117,11 +112,14 @@ impl Network {
         if !path.is_file() {
             return Err(NetworkError::Absent(path.to_owned()));
         }
-        let session =
-            open_session(runtime, path, options).map_err(|reason| NetworkError::NotAModel {
-                path: path.to_owned(),
-                reason,
-            })?;
+        let how = SessionOptions {
+            threads: options.threads,
+            spinning: options.spinning,
+        };
+        let session = open_file(runtime, path, how).map_err(|reason| NetworkError::NotAModel {
+            path: path.to_owned(),
+            reason,
+        })?;
         let wrong = |reason: String| NetworkError::WrongInterface {
             path: path.to_owned(),
             reason,
@@ -256,26 +254,6 @@ fn input_shape(images: usize, size: ImageSize) -> [i64; 4] {
         i64::from(size.height_px),
         i64::from(size.width_px),
     ]
-}
-
-fn open_session(
-    runtime: &Runtime,
-    path: &Path,
-    options: &NetworkOptions,
-) -> Result<Session, String> {
-    let text = |error: &dyn std::error::Error| error.to_string();
-    Session::builder(runtime.environment())
-        .map_err(|e| text(&e))?
-        .with_optimization_level(GraphOptimizationLevel::All)
-        .map_err(|e| text(&e))?
-        .with_intra_threads(options.threads)
-        .map_err(|e| text(&e))?
-        .with_intra_op_spinning(options.spinning)
-        .map_err(|e| text(&e))?
-        .with_dynamic_block_base(DYNAMIC_BLOCK_BASE)
-        .map_err(|e| text(&e))?
-        .commit_from_file(path)
-        .map_err(|e| text(&e))
 }
 
 fn input_of(

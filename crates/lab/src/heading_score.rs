@@ -54,6 +54,7 @@ mod tests {
         Heading {
             yaw_rad: deg.to_radians(),
             std_dev_rad: 0.1,
+            flip_probability: 0.0,
         }
     }
 

@@ -18,6 +18,7 @@ pub mod matching;
 pub mod plots;
 pub mod recorder;
 pub mod report;
+pub mod rotation;
 pub mod sample;
 pub mod sample_table;
 pub mod score;
@@ -31,6 +32,7 @@ pub use labelled_table::{LabelCounts, LabelledTableError, LabelledTableSpec, tab
 pub use matching::TruthFilter;
 pub use recorder::{Recorded, Recorder};
 pub use report::{LatencyMs, Report, ReportError};
+pub use rotation::{RotationReport, RowFilter, RowsFrom};
 pub use sample::{Estimator, Sample, Target};
 pub use sample_table::SampleTable;
 pub use score::Figures;

@@ -85,6 +85,7 @@ pub(crate) fn sample_of(id: &str, found_m: f64, range_m: f64) -> Sample {
     let heading = roadwatch_core::Heading {
         yaw_rad: PI,
         std_dev_rad: 0.1,
+        flip_probability: 0.0,
     };
     let found = location(Point::new(found_m, 0.0, 0.7));
     Sample::judge(

@@ -50,7 +50,8 @@ impl Recorded {
     /// Its heading; `None` where none is known.
     #[must_use]
     pub fn heading(&self, index: usize) -> Option<Heading> {
-        self.tracks.get(index)?.observed.heading
+        let kept = self.tracks.get(index)?.observed.heading?;
+        Some(kept.heading)
     }
 }
 

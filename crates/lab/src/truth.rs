@@ -264,6 +264,14 @@ impl From<Object> for TruthObject {
     }
 }
 
+/// The objects of a line, from its `objects`.
+pub(crate) fn objects_of_line(
+    objects: serde_json::Value,
+) -> Result<Vec<TruthObject>, serde_json::Error> {
+    let objects: Vec<Object> = serde_json::from_value(objects)?;
+    Ok(objects.into_iter().map(TruthObject::from).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -231,7 +231,8 @@ impl Locator for CameraLocator {
         let prior = known.object.as_ref();
         // What is too old to be held is too old to be believed.
         let recent = prior.filter(|prior| prior.age < self.hold.max_age);
-        let heading = recent.and_then(|prior| prior.heading.as_ref());
+        let heading = recent.and_then(|prior| prior.heading);
+        let heading = heading.as_ref().map(|kept| &kept.heading);
         let measured = self.measure(detection, heading, &known.slopes);
         measured.or_else(|| self.hold.keep(prior?))
     }

@@ -51,7 +51,7 @@ impl Cuboid {
             location.size.width_m,
             location.size.height_m,
         ) / 2.0;
-        let yaw_rad = object.heading.map_or(0.0, |heading| heading.yaw_rad);
+        let yaw_rad = object.heading.map_or(0.0, |kept| kept.heading.yaw_rad);
         let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), yaw_rad);
         let center = location.position.coords.coords;
         Self {

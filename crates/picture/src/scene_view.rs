@@ -139,8 +139,8 @@ fn draw_object(canvas: &mut Canvas, map: &Map, object: &SceneObject) -> Result<(
     canvas.tint(&footprint, colour, 0.6)?;
     canvas.outline(&footprint, colour, 1)?;
     canvas.outline(&ellipse(map, location), colour, 1)?;
-    if let Some(heading) = observed.heading {
-        let (sin, cos) = heading.yaw_rad.sin_cos();
+    if let Some(kept) = observed.heading {
+        let (sin, cos) = kept.heading.yaw_rad.sin_cos();
         let tip = center + Vector2::new(cos, sin) * location.size.length_m * ARROW_SHARE;
         canvas.line(map.place(center), map.place(tip), colour, 2)?;
     }

@@ -65,6 +65,7 @@ fn car(ahead_m: f64) -> Track {
         observed: Oriented {
             located,
             heading: None,
+            components: Vec::new(),
         },
     }
 }

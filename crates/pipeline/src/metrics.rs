@@ -97,6 +97,8 @@ pub struct CameraCounts {
     pub disconnected: u64,
     /// Objects in published frames.
     pub objects: u64,
+    /// Published frames whose headings could not be estimated.
+    pub unrotated: u64,
 }
 
 impl CameraCounts {
@@ -126,6 +128,7 @@ struct CameraMetrics {
     lost: AtomicU64,
     disconnected: AtomicU64,
     objects: AtomicU64,
+    unrotated: AtomicU64,
 }
 
 struct SinkMetrics {
@@ -184,6 +187,7 @@ impl Metrics {
             lost: load(&metrics.lost),
             disconnected: load(&metrics.disconnected),
             objects: load(&metrics.objects),
+            unrotated: load(&metrics.unrotated),
         }
     }
 
@@ -240,6 +244,10 @@ impl Metrics {
     pub(crate) fn published(&self, camera: CameraId, objects: usize) {
         add(&self.cameras[camera.index()].published, 1);
         add(&self.cameras[camera.index()].objects, objects as u64);
+    }
+
+    pub(crate) fn unrotated(&self, camera: CameraId) {
+        add(&self.cameras[camera.index()].unrotated, 1);
     }
 
     pub(crate) fn scene(&self) {

@@ -7,8 +7,9 @@ use crate::{
     perceive::Perceiver,
     scene::SceneAssembler,
     sinking::Fanout,
+    warn_limit::WarnLimit,
 };
-use roadwatch_core::{Clock, Output, Scene};
+use roadwatch_core::{CameraId, Clock, Output, RotationError, Scene};
 use std::{
     sync::{
         Arc, Weak,
@@ -25,6 +26,7 @@ pub(crate) struct Perceiving {
     pub(crate) fanout: Fanout,
     pub(crate) metrics: Arc<Metrics>,
     pub(crate) clock: Arc<dyn Clock>,
+    pub(crate) warnings: WarnLimit,
 }
 
 impl Perceiving {
@@ -59,7 +61,12 @@ impl Perceiving {
     fn step(&mut self, seen: Seen) -> Vec<Scene> {
         let perceived = seen.detections.map(|detections| {
             let received_at = detections.frame.received_at;
-            let perceived = Arc::new(self.perceiver.perceive(detections));
+            let (perceived, rotated) = self.perceiver.perceive(detections);
+            let perceived = Arc::new(perceived);
+            if let Err(error) = rotated {
+                self.metrics.unrotated(seen.camera);
+                self.warn(seen.camera, &error);
+            }
             let now = self.clock.now();
             self.metrics.time(
                 Edge::Perceive,
@@ -77,6 +84,12 @@ impl Perceiving {
         });
         self.scenes
             .offer(seen.camera, perceived, &seen.live, self.clock.now())
+    }
+
+    fn warn(&mut self, camera: CameraId, error: &RotationError) {
+        if let Some(suppressed) = self.warnings.allow(self.clock.now()) {
+            tracing::warn!(camera = camera.0, %error, suppressed, "headings of a frame not estimated");
+        }
     }
 
     fn publish_scenes(&self, scenes: impl IntoIterator<Item = Scene>) {

@@ -12,6 +12,7 @@ use crate::{
     scene::SceneAssembler,
     sinking::{Fanout, Sinking},
     stop::Stop,
+    warn_limit::WarnLimit,
 };
 use roadwatch_core::{Clock, Detector, FrameSource, Sink};
 use std::{
@@ -39,7 +40,7 @@ pub struct Stages {
     pub sources: Vec<Box<dyn FrameSource>>,
     /// Shared by all cameras.
     pub detector: Arc<dyn Detector>,
-    /// Locators (one per source) and memory.
+    /// Locators (one per source), headings and memory.
     pub perceiver: Perceiver,
     /// Where outputs go.
     pub sinks: Vec<NamedSink>,
@@ -162,6 +163,7 @@ impl Starting {
             fanout,
             metrics: Arc::clone(&self.metrics),
             clock: Arc::clone(&self.clock),
+            warnings: WarnLimit::default(),
         };
         self.threads
             .spawn("perceive".to_owned(), move || step.run(&detections))?;

@@ -72,6 +72,7 @@ fn a_detector_that_panics_ends_the_run_with_its_name() {
         detector: Arc::new(Panics),
         perceiver: Perceiver {
             locators: vec![Box::new(Nowhere) as Box<dyn Locator>],
+            rotation: None,
             reidentifier: Box::new(NoMemory),
         },
         sinks: Vec::new(),
@@ -150,6 +151,7 @@ fn cameras_and_locators_must_be_as_many() {
         }),
         perceiver: Perceiver {
             locators: Vec::new(),
+            rotation: None,
             reidentifier: Box::new(NoMemory),
         },
         sinks: Vec::new(),

@@ -2,13 +2,16 @@
 
 use crate::ground_memory::GroundMemory;
 use roadwatch_core::{
-    BoxPx, CameraId, Detection, Frame, Heading, Known, Location, ObjectClass, Oriented, PerFrame,
-    Prior, Reidentifier, Timestamp, Track, TrackId,
+    BoxPx, CameraId, Detection, Frame, Heading, KeptHeading, Known, Location, ObjectClass,
+    Oriented, PerFrame, Prior, Reidentifier, Timestamp, Track, TrackId,
 };
 use std::{collections::BTreeMap, time::Duration};
 
 /// Identities of one camera; no frame has more objects. In tens, so that people can read an identity.
 const PLACES: u64 = 10_000;
+/// How fast an object may turn against the vehicle while nobody looks, radians per second: both may take a corner,
+/// at some twenty degrees per second.
+const TURN_STD_RAD_S: f64 = 0.5;
 
 /// Sorts each camera's objects from left to right and gives the n-th the n-th identity (section E of the
 /// paper, Fig. 8).
@@ -32,7 +35,8 @@ struct Remembered {
     class: ObjectClass,
     /// Measured, never held.
     location: Option<Measured>,
-    heading: Option<Heading>,
+    /// As it was found, and when.
+    heading: Option<(Heading, Timestamp)>,
 }
 
 #[derive(Clone, Debug)]
@@ -89,7 +93,10 @@ impl LeftToRight {
         Remembered {
             class: class.clone(),
             location: measured,
-            heading: seen.heading.or_else(|| before?.heading),
+            heading: match seen.heading {
+                Some(KeptHeading { heading, age }) if age.is_zero() => Some((heading, at)),
+                _ => before.and_then(|before| before.heading),
+            },
         }
     }
 }
@@ -110,7 +117,9 @@ impl Reidentifier for LeftToRight {
             let measured = before.location.as_ref()?;
             Some(Prior {
                 location: measured.location.clone(),
-                heading: before.heading,
+                heading: before
+                    .heading
+                    .map(|(heading, at)| kept(heading, captured_at.saturating_since(at))),
                 age: captured_at.saturating_since(measured.at),
             })
         };
@@ -152,6 +161,18 @@ impl Reidentifier for LeftToRight {
             items: seen.items.into_iter().zip(order).map(track).collect(),
             frame: seen.frame,
         }
+    }
+}
+
+/// A heading after some time, in which the object may have turned, or another one has its place.
+fn kept(heading: Heading, age: Duration) -> KeptHeading {
+    let turned_rad = TURN_STD_RAD_S * age.as_secs_f64();
+    KeptHeading {
+        heading: Heading {
+            std_dev_rad: heading.std_dev_rad.hypot(turned_rad),
+            ..heading
+        },
+        age,
     }
 }
 

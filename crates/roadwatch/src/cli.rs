@@ -3,6 +3,7 @@
 mod calibrate;
 mod evaluate;
 mod models;
+mod rotation;
 mod study;
 mod table;
 
@@ -12,6 +13,9 @@ pub use calibrate::{
 };
 pub use evaluate::{EvaluateArgs, FormatName};
 pub use models::{ModelsCommand, ModelsFetchArgs, ModelsListArgs, ModelsVerifyArgs};
+pub use rotation::{
+    RecipeName, RotationCommand, RotationEvaluateArgs, RotationRowsArgs, RotationTrainArgs,
+};
 pub use study::{StudyArgs, StudyBoxes};
 pub use table::{TableBuildArgs, TableCommand, TableInspectArgs, TableQueryArgs};
 
@@ -55,6 +59,9 @@ pub enum Command {
     Table(TableCommand),
     /// Run the pipeline over a labelled dataset and score every method side by side.
     Evaluate(EvaluateArgs),
+    /// Headings from key components: rows, forests, and how good they are.
+    #[command(subcommand)]
+    Rotation(RotationCommand),
     /// Repeat the paper's studies on simulated drives whose truth is exact.
     Study(StudyArgs),
     /// Detector models: list, fetch, verify.
@@ -161,6 +168,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Table(TableCommand::Inspect(args)) => commands::table::inspect(&args),
         Command::Table(TableCommand::Query(args)) => commands::table::query(&args),
         Command::Evaluate(args) => commands::evaluate::run(&args),
+        Command::Rotation(command) => commands::rotation::run(&command),
         Command::Study(args) => commands::study::run(&args),
         Command::Models(ModelsCommand::List(args)) => commands::models::list(&args),
         Command::Models(ModelsCommand::Fetch(args)) => commands::models::fetch(&args),

@@ -1,12 +1,17 @@
 //! From configuration to the parts of a pipeline: everything that can fail at start fails here.
 
-use crate::config::{CameraConfig, Config, Notes, RigConfig, SourceConfig};
+use crate::config::{
+    CameraConfig, Config, DetectorConfig, Notes, RigConfig, RotationConfig, SourceConfig,
+};
 use roadwatch_camera::{
     AnyRecording, DecodeCount, ImageSequence, Playback, PlaybackOptions, Player, Recording,
     RigDataset, Span, VideoFile,
 };
 use roadwatch_core::{FrameSource, Locator, Rig, RigCamera, Timestamp, error_chain};
 use roadwatch_detect::{DetectorError, NetworkError, Runtime, YoloDetector};
+use roadwatch_onnx::SessionOptions;
+use roadwatch_pipeline::perceive::Rotating;
+use roadwatch_rotate::{ComponentModelError, ComponentNetwork, Forest, KeyComponentEstimator};
 use std::sync::Arc;
 
 /// Beginning of a rig without any stamp: one second, as tf takes zero for "latest".
@@ -84,6 +89,61 @@ pub fn locators(config: &Config, notes: &mut Notes) -> Option<Vec<Box<dyn Locato
         })
         .collect();
     built.into_iter().collect()
+}
+
+/// Opens what headings need; `Ok(None)` where the configuration asks for none, an error where it cannot be opened,
+/// which is noted.
+pub fn rotation(config: &Config, notes: &mut Notes) -> Result<Option<Rotating>, Noted> {
+    let (Some(rotation), Some(rig), Some(detector)) =
+        (&config.rotation, &config.rig, &config.detector)
+    else {
+        // Mistakes in any of these are noted already.
+        return Ok(None);
+    };
+    let opened = open_rotation(rotation, rig, detector);
+    let estimator = opened.map_err(|(key, what)| {
+        notes.note(key, what);
+        Noted
+    })?;
+    Ok(Some(Rotating {
+        estimator: Box::new(estimator),
+        crops_per_frame: rotation.crops_per_frame,
+    }))
+}
+
+/// Something could not be opened, and a note says why.
+pub struct Noted;
+
+fn open_rotation(
+    rotation: &RotationConfig,
+    rig: &RigConfig,
+    detector: &DetectorConfig,
+) -> Result<KeyComponentEstimator, (&'static str, String)> {
+    let runtime = Runtime::load(&detector.runtime_candidates);
+    let runtime = runtime.map_err(|error| ("detector.runtime_library", error_chain(&error)))?;
+    let features = rotation.features.as_ref();
+    let features = features.unwrap_or(&detector.options.model);
+    let options = SessionOptions {
+        threads: rotation.threads,
+        spinning: false,
+    };
+    let network = ComponentNetwork::open(&runtime, (&rotation.model, features), options);
+    let network = network.map_err(|error| (model_key(&error), error_chain(&error)))?;
+    let forest = Forest::read(&rotation.forest);
+    let forest = forest.map_err(|error| ("rotation.forest", error_chain(&error)))?;
+    let estimator = KeyComponentEstimator::new(&rig.rig, network, forest, rotation.options.clone());
+    estimator.map_err(|error| ("rotation.forest", error_chain(&error)))
+}
+
+fn model_key(error: &ComponentModelError) -> &'static str {
+    match error {
+        ComponentModelError::OtherDetector { .. } | ComponentModelError::Features { .. } => {
+            "rotation.features"
+        }
+        ComponentModelError::Unreadable { .. } | ComponentModelError::NotAHead { .. } => {
+            "rotation.model"
+        }
+    }
 }
 
 /// Opens what feeds each camera, or notes why not. `decodes` counts the images that are decoded.

@@ -10,7 +10,9 @@ use anyhow::Context as _;
 use roadwatch_camera::{DecodeCount, PlaybackOptions};
 use roadwatch_core::{Detector, FrameSource, Locator, Rig};
 use roadwatch_pipeline::{
-    NamedSink, Outcome, PipelineOptions, Running, Stages, perceive::Perceiver, start,
+    NamedSink, Outcome, PipelineOptions, Running, Stages,
+    perceive::{Perceiver, Rotating},
+    start,
 };
 use roadwatch_reid::LeftToRight;
 use std::{
@@ -32,6 +34,7 @@ pub struct Session {
     sources: Vec<Box<dyn FrameSource>>,
     detector: Arc<dyn Detector>,
     locators: Vec<Box<dyn Locator>>,
+    rotation: Option<Rotating>,
 }
 
 impl Session {
@@ -49,17 +52,19 @@ impl Session {
         let decodes = DecodeCount::default();
         let detector = open::detector(&config, &mut notes);
         let locators = open::locators(&config, &mut notes);
+        let rotation = open::rotation(&config, &mut notes);
         let sources = open::sources(&config, playback, &decodes, &mut notes);
         let rig = open::shared_rig(&config);
         notes.finish()?;
-        match (rig, sources, detector, locators) {
-            (Some(rig), Some(sources), Some(detector), Some(locators)) => Ok(Self {
+        match (rig, sources, detector, locators, rotation) {
+            (Some(rig), Some(sources), Some(detector), Some(locators), Ok(rotation)) => Ok(Self {
                 config,
                 rig,
                 decodes,
                 sources,
                 detector: Arc::new(detector),
                 locators,
+                rotation,
             }),
             _ => unreachable!("what could not be opened was noted"),
         }
@@ -79,6 +84,7 @@ impl Session {
             detector: self.detector,
             perceiver: Perceiver {
                 locators: self.locators,
+                rotation: self.rotation,
                 reidentifier: Box::new(LeftToRight::new(self.config.locate.ground_memory)),
             },
             sinks,

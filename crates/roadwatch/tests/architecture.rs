@@ -6,11 +6,13 @@ use cargo_metadata::{DependencyKind, MetadataCommand};
 use std::collections::BTreeMap;
 
 /// Each crate with the crates of this workspace it may depend on.
-const ARROWS: [(&str, &[&str]); 12] = [
+const ARROWS: [(&str, &[&str]); 14] = [
     ("roadwatch-core", &[]),
     ("roadwatch-pipeline", &["roadwatch-core"]),
     ("roadwatch-camera", &["roadwatch-core"]),
-    ("roadwatch-detect", &["roadwatch-core"]),
+    ("roadwatch-onnx", &[]),
+    ("roadwatch-detect", &["roadwatch-core", "roadwatch-onnx"]),
+    ("roadwatch-rotate", &["roadwatch-core", "roadwatch-onnx"]),
     ("roadwatch-locate", &["roadwatch-core"]),
     ("roadwatch-reid", &["roadwatch-core"]),
     ("roadwatch-ros", &["roadwatch-core"]),
@@ -28,6 +30,7 @@ const ARROWS: [(&str, &[&str]); 12] = [
             "roadwatch-detect",
             "roadwatch-locate",
             "roadwatch-reid",
+            "roadwatch-rotate",
         ],
     ),
     (
@@ -39,7 +42,9 @@ const ARROWS: [(&str, &[&str]); 12] = [
             "roadwatch-camera",
             "roadwatch-detect",
             "roadwatch-locate",
+            "roadwatch-onnx",
             "roadwatch-reid",
+            "roadwatch-rotate",
             "roadwatch-ros",
             "roadwatch-picture",
             "roadwatch-lab",

@@ -2,11 +2,13 @@
 
 mod bars;
 mod from_above;
+mod rotation;
 mod scatter;
 mod sigmas;
 mod study;
 mod style;
 
+pub(crate) use rotation::draw_rotation;
 pub use study::draw_study;
 
 use crate::{

@@ -104,6 +104,8 @@ impl Mixture {
             Heading {
                 yaw_rad,
                 std_dev_rad,
+                // The opposite is a candidate of its own.
+                flip_probability: 0.0,
             },
         )
     }

@@ -3,7 +3,7 @@
 use crate::common::{Random, camera, car_hull, detection, silhouettes};
 use nalgebra::Vector2;
 use roadwatch_core::{
-    BoxPx, Heading, Known, Location, Locator as _, Method, Prior, RigCamera, SizeLwh,
+    BoxPx, Heading, KeptHeading, Known, Location, Locator as _, Method, Prior, RigCamera, SizeLwh,
     space::{BaseLink, Point},
 };
 use roadwatch_locate::{BoxNoise, CameraLocator, GroundPose, LocatorOptions};
@@ -264,9 +264,13 @@ fn a_known_heading_settles_which_of_the_possible_ones_it_is() {
     let alone = locator.locate(&seen, &Known::default()).expect("a place");
     let prior = Prior {
         location: alone.clone(),
-        heading: Some(Heading {
-            yaw_rad: car.yaw_rad,
-            std_dev_rad: 0.15,
+        heading: Some(KeptHeading {
+            heading: Heading {
+                yaw_rad: car.yaw_rad,
+                std_dev_rad: 0.15,
+                flip_probability: 0.0,
+            },
+            age: Duration::from_millis(100),
         }),
         age: Duration::from_millis(100),
     };

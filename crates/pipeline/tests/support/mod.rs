@@ -233,6 +233,7 @@ pub(crate) fn world_with(
             locators: (0..cameras)
                 .map(|_| Box::new(Nowhere) as Box<dyn Locator>)
                 .collect(),
+            rotation: None,
             reidentifier: Box::new(NoMemory),
         },
         sinks: [channel].into_iter().chain(more_sinks).collect(),

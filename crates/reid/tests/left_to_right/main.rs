@@ -3,9 +3,9 @@
 use nalgebra::Matrix3;
 use proptest::prelude::*;
 use roadwatch_core::{
-    BoxPx, CameraId, Detection, Frame, Heading, HeadingCandidates, Image, ImageSize, Located,
-    Location, Method, ObjectClass, Oriented, PerFrame, Pixels, Prior, Reidentifier, Score, SizeLwh,
-    SlopeEvidence, Timestamp, TrackId,
+    BoxPx, CameraId, Detection, Frame, Heading, HeadingCandidates, Image, ImageSize, KeptHeading,
+    Located, Location, Method, ObjectClass, Oriented, PerFrame, Pixels, Prior, Reidentifier, Score,
+    SizeLwh, SlopeEvidence, Timestamp, TrackId,
     space::{Covariance, Point},
 };
 use roadwatch_reid::LeftToRight;
@@ -62,6 +62,7 @@ fn oriented(detection: Detection, location: Location) -> Oriented {
             slopes: SlopeEvidence::default(),
         },
         heading: None,
+        components: Vec::new(),
     }
 }
 
@@ -181,9 +182,13 @@ fn the_last_heading_stays_until_there_is_a_newer_one() {
     let heading = Heading {
         yaw_rad: 1.0,
         std_dev_rad: 0.1,
+        flip_probability: 0.2,
     };
     let items = vec![Oriented {
-        heading: Some(heading),
+        heading: Some(KeptHeading {
+            heading,
+            age: Duration::ZERO,
+        }),
         ..oriented(detection("car", 100.0), measured(100.0))
     }];
     reid.commit(
@@ -197,7 +202,13 @@ fn the_last_heading_stays_until_there_is_a_newer_one() {
     let priors = priors(&reid, &seen(0, 200, &cars(&[102.0])));
     assert_eq!(
         priors[0].as_ref().and_then(|prior| prior.heading),
-        Some(heading)
+        Some(KeptHeading {
+            heading: Heading {
+                std_dev_rad: 0.1_f64.hypot(0.5 * 0.2),
+                ..heading
+            },
+            age: Duration::from_millis(200),
+        })
     );
 }
 

@@ -7,6 +7,7 @@ pub mod graph;
 pub mod models;
 mod output;
 mod progress;
+pub mod rotation;
 pub mod run;
 mod scoring;
 pub mod study;

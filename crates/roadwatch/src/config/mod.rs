@@ -12,6 +12,7 @@ mod mistake;
 pub mod node;
 mod notes;
 mod reader;
+pub mod rotation;
 mod values;
 
 pub use camera_source::SourceConfig;
@@ -22,6 +23,7 @@ pub use locate::LocateConfig;
 pub use mistake::{Mistake, Mistakes};
 pub use node::NodeConfig;
 pub use notes::Notes;
+pub use rotation::RotationConfig;
 
 use reader::{Document, Reader};
 use roadwatch_pipeline::PipelineOptions;
@@ -45,6 +47,8 @@ pub struct Config {
     pub rig: Option<RigConfig>,
     /// `[locate]`.
     pub locate: LocateConfig,
+    /// `[rotation]`; `None` without it, or when there is a mistake in it.
+    pub rotation: Option<RotationConfig>,
     /// `[scene] timeout_secs`.
     pub scene_timeout: Duration,
 }
@@ -87,8 +91,9 @@ impl Config {
 }
 
 fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<DatasetChoice>) -> Config {
-    let sections = ["node", "detector", "rig", "locate", "scene"].map(|key| root.table(key));
-    let [node, detector, rig, locate, scene] = &sections;
+    let sections = ["node", "detector", "rig", "locate", "rotation", "scene"];
+    let sections = sections.map(|key| root.table(key));
+    let [node, detector, rig, locate, rotation, scene] = &sections;
     let camera_tables = root.tables("camera");
     let head = cameras::read_head(rig, dataset);
     let rig_config = cameras::read(rig, &head, &camera_tables);
@@ -105,6 +110,7 @@ fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<DatasetChoice>) -> C
         detector: detector::read(detector),
         rig: rig_config,
         locate: locate::read(locate),
+        rotation: rotation::read(rotation),
         scene_timeout: timeout.map_or(
             PipelineOptions::DEFAULT_SCENE_TIMEOUT,
             Duration::from_secs_f64,

@@ -3,7 +3,7 @@
 use crate::msg::geometry_msgs::{PoseWithCovariance, Vector3};
 use nalgebra::{Isometry3, Matrix6, Translation3, UnitQuaternion, Vector3 as Axis};
 use roadwatch_core::{
-    Heading, Oriented, SizeLwh,
+    KeptHeading, Oriented, SizeLwh,
     space::{BaseLink, Optical, Transform},
 };
 use std::f64::consts::PI;
@@ -23,9 +23,12 @@ pub(crate) struct UncertainPose {
     covariance: Matrix6<f64>,
 }
 
-/// Variance of the yaw, square radians; that of a uniform angle without a heading.
-pub(crate) fn yaw_variance(heading: Option<Heading>) -> f64 {
-    heading.map_or(YAW_UNKNOWN_VARIANCE_RAD2, |h| h.std_dev_rad * h.std_dev_rad)
+/// Variance of the yaw, square radians, with the chance of a flip; that of a uniform angle without a heading.
+pub(crate) fn yaw_variance(heading: Option<KeptHeading>) -> f64 {
+    let known = heading.map(|kept| kept.heading.variance_rad2());
+    known.map_or(YAW_UNKNOWN_VARIANCE_RAD2, |variance| {
+        variance.min(YAW_UNKNOWN_VARIANCE_RAD2)
+    })
 }
 
 /// Length, width and height as extents along x, y and z.
@@ -41,7 +44,7 @@ impl UncertainPose {
     /// The pose in the base frame; not turned when the heading is unknown.
     pub(crate) fn in_base(object: &Oriented) -> Self {
         let location = &object.located.location;
-        let yaw_rad = object.heading.map_or(0.0, |heading| heading.yaw_rad);
+        let yaw_rad = object.heading.map_or(0.0, |kept| kept.heading.yaw_rad);
         let diagonal = [
             UPRIGHT_VARIANCE_RAD2,
             UPRIGHT_VARIANCE_RAD2,

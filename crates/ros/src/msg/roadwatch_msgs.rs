@@ -6,6 +6,19 @@ use super::{
 };
 use serde::{Deserialize, Serialize};
 
+/// A key component of an object, where the image shows it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct KeyComponent {
+    /// What it is.
+    pub name: String,
+    /// Column, pixels.
+    pub x_px: f32,
+    /// Row, pixels.
+    pub y_px: f32,
+    /// How sure the model is, 0 to 1.
+    pub score: f32,
+}
+
 /// One object and everything that is known about it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Object {
@@ -39,6 +52,12 @@ pub struct Object {
     pub yaw_rad: f64,
     /// Variance of the heading, square radians.
     pub yaw_variance: f64,
+    /// How likely it points the other way, 0 to 0.5.
+    pub flip_probability: f32,
+    /// Seconds since the heading was found.
+    pub heading_age: f32,
+    /// Key components found in this frame.
+    pub components: Vec<KeyComponent>,
     /// Names of the cameras that saw it.
     pub seen_by: Vec<String>,
 }

@@ -3,12 +3,16 @@
 use nalgebra::Matrix3;
 use roadwatch_core::{
     BoxPx, CameraId, CameraModel, CameraName, Detection, Distortion, Frame, Heading,
-    HeadingCandidates, Image, ImageSize, Intrinsics, Located, Location, Method, Mount, ObjectClass,
-    Oriented, Output, PerFrame, Perceived, Pixels, Rig, RigCamera, Scene, SceneObject, Score,
-    SizeLwh, SlopeEvidence, Timestamp, Track, TrackId,
+    HeadingCandidates, Image, ImageSize, Intrinsics, KeptHeading, Located, Location, Method, Mount,
+    ObjectClass, Oriented, Output, PerFrame, Perceived, Pixels, Rig, RigCamera, Scene, SceneObject,
+    Score, SizeLwh, SlopeEvidence, Timestamp, Track, TrackId,
     space::{Covariance, Point},
 };
-use std::{f64::consts::PI, sync::Arc, time::Instant};
+use std::{
+    f64::consts::PI,
+    sync::Arc,
+    time::{Duration, Instant},
+};
 
 /// 0.1 s, between two frames of a camera.
 pub(crate) const INTERVAL_NS: i64 = 100_000_000;
@@ -126,10 +130,15 @@ fn track(id: u64, class: &str, yaw_rad: Option<f64>) -> Track {
                 location,
                 slopes: SlopeEvidence::default(),
             },
-            heading: yaw_rad.map(|yaw_rad| Heading {
-                yaw_rad,
-                std_dev_rad: 0.1,
+            heading: yaw_rad.map(|yaw_rad| KeptHeading {
+                heading: Heading {
+                    yaw_rad,
+                    std_dev_rad: 0.1,
+                    flip_probability: 0.0,
+                },
+                age: Duration::ZERO,
             }),
+            components: Vec::new(),
         },
     }
 }

@@ -1,0 +1,10 @@
+//! The rotational data frame from labelled images, and how well a forest turns it into headings.
+
+mod pictures;
+mod rows;
+mod score;
+
+pub use pictures::PictureSetError;
+pub use rows::{RowFilter, RowSourceError, RowsFrom};
+pub(crate) use score::Answer;
+pub use score::{RotationReport, RotationReportError, RotationScore};

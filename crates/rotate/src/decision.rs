@@ -1,0 +1,243 @@
+//! From all that is known of an object's direction to one heading.
+
+use crate::{
+    angle::{RayAngle, Yaw, wrapped},
+    forest::Turned,
+    row::Row,
+};
+use roadwatch_core::{Heading, HeadingCandidate, HeadingCandidates, Location};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// A forest is wrong altogether this often: components of another car, a kind of vehicle it never saw.
+const FOREST_FAILS: f64 = 0.1;
+/// So is what the model sees at once.
+const FACING_FAILS: f64 = 0.1;
+/// The heading an object had is another object's, or from before a turn.
+const PRIOR_FAILS: f64 = 0.2;
+/// The forest sharpens a heading that it agrees with to this, radians: beyond, it means another one.
+const AGREES_WITHIN_RAD: f64 = 0.5;
+/// No forest is better than this on photographs, radians: it was grown on simulated ones.
+const LEAST_FOREST_STD_RAD: f64 = 0.1;
+
+/// The likeliest heading of an object, its deviation, and how likely it is to be turned round.
+///
+/// Candidates are the headings that the object's place allows ([`Location::headings`]), or what the forest says where
+/// it allows any. Each weighs as much as its place, the forest, the model's direct look and the heading that the
+/// object had agree with it; each of these may fail.
+#[must_use]
+pub fn decide(
+    location: &Location,
+    ray: RayAngle,
+    (row, turned): (&Row, &Turned),
+    before: Option<&Heading>,
+) -> Heading {
+    let seen = turned.angle.seen_along(ray);
+    let forest = Heading {
+        yaw_rad: seen.radians(),
+        std_dev_rad: turned.std_dev_rad.max(LEAST_FOREST_STD_RAD),
+        flip_probability: turned.flip_share,
+    };
+    let candidates = if location.headings.is_empty() {
+        both_ways(&forest)
+    } else {
+        location.headings.clone()
+    };
+    let weigh = |candidate: &HeadingCandidate| {
+        let heading = &candidate.heading;
+        let by_forest = likelihood(&forest, heading, FOREST_FAILS);
+        let by_look = (1.0 - FACING_FAILS) * facing(row, heading, ray) + FACING_FAILS;
+        let by_memory = before.map_or(1.0, |before| likelihood(before, heading, PRIOR_FAILS));
+        candidate.weight * by_forest * by_look * by_memory
+    };
+    let weights: Vec<f64> = candidates.iter().map(weigh).collect();
+    let sum: f64 = weights.iter().sum();
+    let best = (0..weights.len()).max_by(|&a, &b| weights[a].total_cmp(&weights[b]));
+    let Some(best) = best.filter(|_| sum > 0.0) else {
+        return forest;
+    };
+    let chosen = &candidates[best].heading;
+    let (mut flipped, mut spread) = (0.0, 0.0);
+    for (candidate, weight) in candidates.iter().zip(&weights) {
+        let apart = wrapped(candidate.heading.yaw_rad - chosen.yaw_rad);
+        if apart.abs() > FRAC_PI_2 {
+            flipped += weight / sum;
+        } else {
+            spread += weight / sum * apart * apart;
+        }
+    }
+    let sharpened = sharpened(chosen, &forest);
+    Heading {
+        std_dev_rad: sharpened
+            .std_dev_rad
+            .hypot((spread / (1.0 - flipped)).sqrt()),
+        flip_probability: flipped,
+        ..sharpened
+    }
+}
+
+/// A heading and its opposite, by the probability of that.
+fn both_ways(heading: &Heading) -> HeadingCandidates {
+    let way = |turn: f64, weight: f64| HeadingCandidate {
+        heading: Heading {
+            yaw_rad: wrapped(heading.yaw_rad + turn),
+            flip_probability: 0.0,
+            ..*heading
+        },
+        weight,
+    };
+    let flipped = heading.flip_probability;
+    [way(0.0, 1.0 - flipped), way(PI, flipped)]
+        .into_iter()
+        .collect()
+}
+
+/// How likely `said` makes a heading, relative to all being alike; a share `fails` of its answers means nothing.
+fn likelihood(said: &Heading, heading: &Heading, fails: f64) -> f64 {
+    let variance = said.std_dev_rad.powi(2) + heading.std_dev_rad.powi(2);
+    let height = TAU / (TAU * variance).sqrt();
+    let near = |turn: f64| {
+        let apart = wrapped(heading.yaw_rad - said.yaw_rad - turn);
+        height * (-0.5 * apart * apart / variance).exp()
+    };
+    let flipped = said.flip_probability;
+    (1.0 - fails) * ((1.0 - flipped) * near(0.0) + flipped * near(PI)) + fails
+}
+
+/// How likely the model's direct look makes a heading, over the heading's deviation.
+fn facing(row: &Row, heading: &Heading, ray: RayAngle) -> f64 {
+    let sides = [-1.0, 0.0, 1.0].map(|deviations| {
+        let yaw = Yaw::new(heading.yaw_rad + deviations * heading.std_dev_rad);
+        row.facing_likelihood(yaw.seen_along(ray))
+    });
+    sides.iter().sum::<f64>() / sides.len() as f64
+}
+
+/// The mean of a heading and the forest's, by their variances, where they mean the same.
+fn sharpened(heading: &Heading, forest: &Heading) -> Heading {
+    let apart = wrapped(forest.yaw_rad - heading.yaw_rad);
+    if apart.abs() > AGREES_WITHIN_RAD {
+        return *heading;
+    }
+    let (own, other) = (heading.std_dev_rad.powi(2), forest.std_dev_rad.powi(2));
+    let share = own / (own + other).max(f64::MIN_POSITIVE);
+    Heading {
+        yaw_rad: wrapped(heading.yaw_rad + share * apart),
+        std_dev_rad: (own * other / (own + other).max(f64::MIN_POSITIVE)).sqrt(),
+        ..*heading
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::angle::ObservationAngle;
+    use nalgebra::Matrix3;
+    use roadwatch_core::{
+        Method, SizeLwh,
+        space::{Covariance, Point},
+    };
+
+    fn heading(deg: f64, flip_probability: f64) -> Heading {
+        Heading {
+            yaw_rad: deg.to_radians(),
+            std_dev_rad: 5.0_f64.to_radians(),
+            flip_probability,
+        }
+    }
+
+    fn location(candidates: &[(f64, f64)]) -> Location {
+        let candidate = |&(deg, weight): &(f64, f64)| HeadingCandidate {
+            heading: heading(deg, 0.0),
+            weight,
+        };
+        Location {
+            position: Point::new(20.0, 0.0, 0.8),
+            covariance: Covariance::new(Matrix3::identity()),
+            depth_m: 20.0,
+            range_m: 20.0,
+            size: SizeLwh {
+                length_m: 4.6,
+                width_m: 1.85,
+                height_m: 1.6,
+            },
+            method: Method::Fused,
+            headings: candidates.iter().map(candidate).collect(),
+            ground: None,
+            held: false,
+        }
+    }
+
+    fn turned(deg: f64, flip_share: f64) -> Turned {
+        Turned {
+            angle: ObservationAngle::new(deg.to_radians()),
+            std_dev_rad: 0.3,
+            flip_share,
+        }
+    }
+
+    /// Eight directions, one of them seen.
+    fn looks(bin: usize) -> Row {
+        let mut facing = vec![0.02; 8];
+        facing[bin] = 0.86;
+        Row {
+            facing,
+            ..Row::default()
+        }
+    }
+
+    const FOUR: [(f64, f64); 4] = [(10.0, 0.25), (-10.0, 0.25), (170.0, 0.25), (-170.0, 0.25)];
+
+    #[test]
+    fn parts_choose_among_the_headings_that_the_place_allows() {
+        let ray = RayAngle::towards(1.0, 0.0);
+        let found = decide(
+            &location(&FOUR),
+            ray,
+            (&looks(4), &turned(160.0, 0.1)),
+            None,
+        );
+        assert!((found.yaw_rad.to_degrees() - 170.0).abs() < 3.0);
+        assert!(found.flip_probability < 0.05);
+        let back = decide(
+            &location(&FOUR),
+            ray,
+            (&looks(0), &turned(-20.0, 0.1)),
+            None,
+        );
+        assert!((back.yaw_rad.to_degrees() + 10.0).abs() < 3.0);
+    }
+
+    #[test]
+    fn what_disagrees_leaves_a_flip_open() {
+        let ray = RayAngle::towards(1.0, 0.0);
+        let agreed = decide(&location(&FOUR), ray, (&looks(0), &turned(5.0, 0.0)), None);
+        let torn = decide(&location(&FOUR), ray, (&looks(4), &turned(5.0, 0.4)), None);
+        assert!(agreed.flip_probability < 0.02 && torn.flip_probability > 0.1);
+        assert!(torn.flip_probability <= 0.5);
+    }
+
+    #[test]
+    fn the_heading_an_object_had_decides_where_parts_do_not() {
+        let ray = RayAngle::towards(1.0, 0.0);
+        let unsure = (&Row::default(), &turned(90.0, 0.5));
+        let before = heading(-172.0, 0.1);
+        let found = decide(&location(&FOUR), ray, unsure, Some(&before));
+        assert!(
+            (found.yaw_rad.to_degrees() + 170.0).abs() < 6.0,
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn without_candidates_the_forest_is_believed_along_its_ray() {
+        let ray = RayAngle::towards(1.0, 1.0);
+        let found = decide(
+            &location(&[]),
+            ray,
+            (&Row::default(), &turned(30.0, 0.1)),
+            None,
+        );
+        assert!((found.yaw_rad.to_degrees() - 75.0).abs() < 1e-6);
+        assert!(found.flip_probability < 0.2);
+    }
+}
