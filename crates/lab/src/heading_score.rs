@@ -89,6 +89,7 @@ mod tests {
             [(1.0, 1.0), (3.0, 3.0), (170.0, 10.0)].map(|(best_deg, folded_deg)| HeadingError {
                 best_deg,
                 folded_deg,
+                decided: true,
             });
         let score = HeadingScore::of(errors.into_iter());
         assert_eq!((score.n, score.median_abs_deg), (3, Some(3.0)));

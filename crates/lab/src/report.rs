@@ -108,11 +108,24 @@ impl Report {
     pub fn summary(&self) -> String {
         let (filter, detection) = (&self.filter, &self.detection);
         let (distance, location) = (&self.published.distance, &self.published.location);
+        let heading = &self.published.decided_heading;
+        let degrees = |value: Option<f64>| value.map_or("-".to_owned(), |deg| format!("{deg:.1}"));
+        let headings = if heading.n == 0 {
+            "no heading was decided for".to_owned()
+        } else {
+            format!(
+                "heading of {}: error mean {} degrees, median {} degrees, {} turned round",
+                heading.n,
+                degrees(heading.mean_abs_deg),
+                degrees(heading.median_abs_deg),
+                percent(heading.flip_share),
+            )
+        };
         format!(
             "against the labels of {} images ({}; at least {} px high, at most {} hidden and {} outside the image):\n  \
              found {} of {} (recall {}), precision {}\n  \
              location error mean {} m, median {} m, 90 % below {} m; {} of the found are within 1.5 m\n  \
-             distance error mean {} of the distance, bias {}",
+             distance error mean {} of the distance, bias {}\n  {headings}",
             self.frames,
             filter.classes.join(", "),
             filter.min_height_px,

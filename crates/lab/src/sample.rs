@@ -126,6 +126,8 @@ pub struct HeadingError {
     pub best_deg: f64,
     /// Of the nearest heading that the box allows, 0 to 180.
     pub folded_deg: f64,
+    /// Whether somebody decided for the likeliest, and the box did not just allow it.
+    pub decided: bool,
 }
 
 /// One estimator's answer for one object in one image.
@@ -207,6 +209,7 @@ fn heading_error(
     Some(HeadingError {
         best_deg: *known.first()?,
         folded_deg: known.iter().copied().fold(f64::INFINITY, f64::min),
+        decided: heading.is_some(),
     })
 }
 

@@ -72,8 +72,10 @@ pub struct Figures {
     pub coverage_90: Option<f64>,
     /// How honest the covariances are.
     pub nees: NeesScore,
-    /// Of the heading.
+    /// Of the likeliest heading, decided for or not.
     pub heading: HeadingScore,
+    /// Of the headings that were decided for.
+    pub decided_heading: HeadingScore,
     /// Objects that were given no place.
     pub unlocated: usize,
 }
@@ -100,6 +102,11 @@ impl Figures {
             coverage_90: coverage(&located),
             nees: NeesScore::of(each().map(|(_, found)| found)),
             heading: HeadingScore::of(each().filter_map(|(_, found)| found.heading)),
+            decided_heading: HeadingScore::of(
+                each()
+                    .filter_map(|(_, found)| found.heading)
+                    .filter(|error| error.decided),
+            ),
             unlocated,
         }
     }

@@ -107,3 +107,114 @@ fn with_kept_heading(located: Located, known: &Known) -> Oriented {
         components: Vec::new(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Matrix3;
+    use roadwatch_core::{
+        BoxPx, CameraId, HeadingCandidates, Image, ImageSize, Location, Method, ObjectClass,
+        Pixels, Rotation, Score, SizeLwh, SlopeEvidence, Timestamp,
+        space::{Covariance, Point},
+    };
+    use std::{
+        sync::{Arc, Mutex},
+        time::Instant,
+    };
+
+    /// Notes which objects it was asked for, by the left edges of their boxes.
+    struct Asked(Arc<Mutex<Vec<f32>>>);
+
+    impl RotationEstimator for Asked {
+        fn wants(&self, located: &Located) -> bool {
+            located.detection.class.as_str() == "car"
+        }
+
+        fn estimate(
+            &mut self,
+            _: &Frame,
+            objects: &[(&Located, Option<Heading>)],
+        ) -> Result<Vec<Option<Rotation>>, RotationError> {
+            let lefts = objects
+                .iter()
+                .map(|(located, _)| located.detection.box_px.x_min);
+            self.0.lock().expect("alone").extend(lefts);
+            Ok(objects.iter().map(|_| None).collect())
+        }
+    }
+
+    fn object(left: f32, class: &str, heading_age_millis: Option<u64>) -> Oriented {
+        let detection = Detection {
+            class: ObjectClass::new(class),
+            score: Score::new(0.5).expect("a score"),
+            box_px: BoxPx::new(left, 0.0, left + 10.0, 10.0).expect("a box"),
+        };
+        let heading = heading_age_millis.map(|millis| KeptHeading {
+            heading: Heading {
+                yaw_rad: 0.0,
+                std_dev_rad: 0.1,
+                flip_probability: 0.0,
+            },
+            age: Duration::from_millis(millis),
+        });
+        let located = Located {
+            detection,
+            location: Location {
+                position: Point::new(10.0, 0.0, 0.8),
+                covariance: Covariance::new(Matrix3::identity()),
+                depth_m: 10.0,
+                range_m: 10.0,
+                size: SizeLwh {
+                    length_m: 4.6,
+                    width_m: 1.85,
+                    height_m: 1.6,
+                },
+                method: Method::Fused,
+                headings: HeadingCandidates::default(),
+                ground: None,
+                held: false,
+            },
+            slopes: SlopeEvidence::default(),
+        };
+        Oriented {
+            heading,
+            ..with_kept_heading(located, &Known::default())
+        }
+    }
+
+    fn frame() -> Frame {
+        let size = ImageSize {
+            width_px: 1,
+            height_px: 1,
+        };
+        Frame {
+            camera: CameraId(0),
+            seq: 0,
+            captured_at: Timestamp::from_nanos(0),
+            received_at: Instant::now(),
+            image: Image::decoded(Pixels::new(size, vec![0; 3]).expect("a pixel")),
+        }
+    }
+
+    #[test]
+    fn those_longest_without_a_heading_are_looked_at_first_and_no_more_than_the_budget() {
+        let asked = Arc::new(Mutex::new(Vec::new()));
+        let mut rotating = Rotating {
+            estimator: Box::new(Asked(Arc::clone(&asked))),
+            crops_per_frame: 3,
+        };
+        let mut objects = [
+            object(1.0, "car", Some(100)),
+            object(2.0, "car", None),
+            object(3.0, "person", None),
+            object(4.0, "car", Some(300)),
+            object(5.0, "car", Some(200)),
+        ];
+        rotating.rotate(&frame(), &mut objects).expect("asked");
+        assert_eq!(*asked.lock().expect("alone"), [2.0, 4.0, 5.0]);
+        assert_eq!(
+            objects[0].heading.map(|kept| kept.age),
+            Some(Duration::from_millis(100))
+        );
+    }
+}

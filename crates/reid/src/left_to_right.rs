@@ -1,6 +1,7 @@
 //! The paper's baseline: the n-th object from the left keeps the n-th identity.
 
 use crate::ground_memory::GroundMemory;
+use nalgebra::Matrix2;
 use roadwatch_core::{
     BoxPx, CameraId, Detection, Frame, Heading, KeptHeading, Known, Location, ObjectClass,
     Oriented, PerFrame, Prior, Reidentifier, Timestamp, Track, TrackId,
@@ -9,6 +10,14 @@ use std::{collections::BTreeMap, time::Duration};
 
 /// Identities of one camera; no frame has more objects. In tens, so that people can read an identity.
 const PLACES: u64 = 10_000;
+/// How fast an object may move against the vehicle, metres per second: a difference of two speeds in city traffic.
+const SPEED_STD_M_S: f64 = 5.0;
+/// Share of an estimate's variance that is new in the next frame: box noise, not the object's unknown size.
+const SHARE_THAT_CHANGES: f64 = 0.25;
+/// Estimates of one object jump by this much whatever their covariances say, metres.
+const LEAST_APART_M: f64 = 0.3;
+/// Beyond this many standard deviations it is another object.
+const MOST_APART_STD_DEVS: f64 = 3.0;
 /// How fast an object may turn against the vehicle while nobody looks, radians per second: both may take a corner,
 /// at some twenty degrees per second.
 const TURN_STD_RAD_S: f64 = 0.5;
@@ -70,6 +79,26 @@ impl LeftToRight {
         (one.class == *class).then_some(one)
     }
 
+    /// Takes a kept heading away from an object that stands somewhere else than the one it was kept for: when the
+    /// row moves on, a place has another object.
+    fn drop_foreign_heading(
+        &self,
+        seen: &mut Oriented,
+        (camera, place): (CameraId, usize),
+        at: Timestamp,
+    ) {
+        let is_kept = seen.heading.is_some_and(|kept| !kept.age.is_zero());
+        let before = self.remembered(camera, place, &seen.located.detection.class);
+        let measured = before.and_then(|before| before.location.as_ref());
+        let foreign = measured.is_none_or(|measured| {
+            let age = at.saturating_since(measured.at);
+            !is_near(&seen.located.location, &measured.location, age)
+        });
+        if is_kept && foreign {
+            seen.heading = None;
+        }
+    }
+
     /// What is known after a frame about the object at a place: a held location is the one measured
     /// earlier, and keeps the stamp it was measured at.
     fn remember(
@@ -95,7 +124,9 @@ impl LeftToRight {
             location: measured,
             heading: match seen.heading {
                 Some(KeptHeading { heading, age }) if age.is_zero() => Some((heading, at)),
-                _ => before.and_then(|before| before.heading),
+                // Kept for the object that is there, or taken away.
+                Some(_) => before.and_then(|before| before.heading),
+                None => None,
             },
         }
     }
@@ -131,12 +162,15 @@ impl Reidentifier for LeftToRight {
     }
 
     /// Items come back in the order they were given in.
-    fn commit(&mut self, seen: PerFrame<Oriented>, unlocated: &[Detection]) -> PerFrame<Track> {
+    fn commit(&mut self, mut seen: PerFrame<Oriented>, unlocated: &[Detection]) -> PerFrame<Track> {
         let camera = seen.frame.camera;
         let located = seen.items.iter().map(|one| &one.located.detection.box_px);
         let others = unlocated.iter().map(|detection| &detection.box_px);
         // Of the places of all, those of the located come first.
         let order = places(located.chain(others));
+        for (one, &place) in seen.items.iter_mut().zip(&order) {
+            self.drop_foreign_heading(one, (camera, place), seen.frame.captured_at);
+        }
         let remember = |(one, &place): (&Oriented, &usize)| {
             (
                 place,
@@ -174,6 +208,22 @@ fn kept(heading: Heading, age: Duration) -> KeptHeading {
         },
         age,
     }
+}
+
+/// Whether two locations, one some time after the other, may be one object's: no further apart than their own
+/// deviations and its motion against the vehicle explain.
+fn is_near(here: &Location, before: &Location, age: Duration) -> bool {
+    let apart = (here.position.coords - before.position.coords).xy();
+    let moved_m = SPEED_STD_M_S * age.as_secs_f64();
+    let flat = |location: &Location| {
+        let flat = location.covariance.matrix.fixed_view::<2, 2>(0, 0);
+        flat.into_owned()
+    };
+    // Most of an estimate's error is its own in every frame: the same object's estimates differ by less.
+    let spread = (flat(here) + flat(before)) * SHARE_THAT_CHANGES
+        + Matrix2::identity() * (moved_m * moved_m + LEAST_APART_M * LEAST_APART_M);
+    let inverse = spread.try_inverse().unwrap_or_else(Matrix2::zeros);
+    apart.dot(&(inverse * apart)) < MOST_APART_STD_DEVS * MOST_APART_STD_DEVS
 }
 
 /// The identity of a place in a camera's row.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -59,6 +59,7 @@ class Training:
             _parameter_groups(self.network, settings.weight_decay), settings.learning_rate, ADAM_BETAS
         )
         self.cells = Cells.of_input(settings.width_px, settings.height_px)
+        self.settled = True
         self.batches_done = 0
         self.seconds_before = 0.0
         self.began = time.monotonic()
@@ -77,7 +78,8 @@ class Training:
         `run` is that training's folder, whose averaged weights are taken, or an exported `.onnx` file.
         """
         if run.suffix == ".onnx":
-            self._start_from_exported(run)
+            read_exported(run, self.network)
+            self.settled = False
             return
         state = Checkpoint.read(run)
         if state.settings["width"] != self.settings.width:
@@ -87,12 +89,12 @@ class Training:
         self.average.load_state_dict(state.average)
         self.network.load_state_dict(self.average.network.state_dict())
 
-    def _start_from_exported(self, path: Path) -> None:
-        read_exported(path, self.network)
-        examples = batches(self.store, self._plan(), 0, self.settings.workers)
-        settling = itertools.islice(examples, SETTLING_BATCHES)
+    def _settle(self, made: Iterator[Batch]) -> None:
+        """Lets the first examples say what the normalisations of exported weights undo."""
+        settling = itertools.islice(made, SETTLING_BATCHES)
         settle_normalisation(self.network, (batch.network_input() for batch in settling))
         self.average = AveragedWeights(self.network)
+        self.settled = True
 
     @property
     def seconds(self) -> float:
@@ -109,7 +111,10 @@ class Training:
     def run(self) -> Trained:
         """Trains to the end."""
         self.began = time.monotonic()
+        # Before anything is computed: a process forked beside busy threads may wait for them for ever.
         made = batches(self.store, self._plan(), self.batches_done, self.settings.workers)
+        if not self.settled:
+            self._settle(made)
         step = torch.compile(self.network) if self.settings.compiled else self.network
         report = ProgressReport(self)
         saved = time.monotonic()

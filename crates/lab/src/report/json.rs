@@ -75,6 +75,7 @@ impl Report {
         let (source, score) = self.heading().unzip();
         let mut heading = json!(score.copied().unwrap_or_default());
         let said = self.places().filter(|(_, figures)| figures.heading.n > 0);
+        heading["decided"] = json!(self.published.decided_heading);
         heading["source"] = json!(source.map(Estimator::as_str));
         heading["by_method"] = object(said.map(|(who, f)| (who.to_string(), json!(f.heading))));
         heading

@@ -169,13 +169,17 @@ impl Report {
             return "\n## Heading\n\nNothing was said of headings.\n".to_owned();
         }
         let mut text = String::from(
-            "\n## Heading\n\nFolded: the nearest of the headings that the box allows.\n\n\
+            "\n## Heading\n\nFolded: the nearest of the headings that the box allows. Decided for: those published as known.\n\n\
              | method | n | mean ° | median ° | flipped | folded median ° |\n|---|---|---|---|---|---|\n",
         );
-        for (who, figures) in said {
-            let h = &figures.heading;
+        let decided = &self.published.decided_heading;
+        let decided = (decided.n > 0).then(|| ("decided for".to_owned(), decided));
+        let said = said
+            .into_iter()
+            .map(|(who, figures)| (who.to_string(), &figures.heading));
+        for (who, h) in decided.into_iter().chain(said) {
             let cells = [
-                who.to_string(),
+                who,
                 h.n.to_string(),
                 degrees(h.mean_abs_deg),
                 degrees(h.median_abs_deg),

@@ -198,8 +198,19 @@ fn the_last_heading_stays_until_there_is_a_newer_one() {
         },
         &[],
     );
-    commit(&mut reid, 0, 100, &cars(&[101.0]));
-    let priors = priors(&reid, &seen(0, 200, &cars(&[102.0])));
+    let kept = priors(&reid, &seen(0, 100, &cars(&[100.5])));
+    let items = vec![Oriented {
+        heading: kept[0].as_ref().and_then(|prior| prior.heading),
+        ..oriented(detection("car", 100.5), measured(100.5))
+    }];
+    reid.commit(
+        PerFrame {
+            frame: frame(0, 100),
+            items,
+        },
+        &[],
+    );
+    let priors = priors(&reid, &seen(0, 200, &cars(&[101.0])));
     assert_eq!(
         priors[0].as_ref().and_then(|prior| prior.heading),
         Some(KeptHeading {
@@ -210,6 +221,37 @@ fn the_last_heading_stays_until_there_is_a_newer_one() {
             age: Duration::from_millis(200),
         })
     );
+}
+
+/// A car at some distance with a heading of this age.
+fn car_with_heading(x_m: f64, age: Duration) -> Oriented {
+    let heading = Heading {
+        yaw_rad: 1.0,
+        std_dev_rad: 0.1,
+        flip_probability: 0.2,
+    };
+    Oriented {
+        heading: Some(KeptHeading { heading, age }),
+        ..oriented(detection("car", 100.0), measured(x_m))
+    }
+}
+
+#[test]
+fn a_kept_heading_stays_with_its_object_and_not_with_its_place_in_the_row() {
+    let keeps = |x_m: f64| {
+        let mut reid = left_to_right();
+        let mut commit = |millis, car| {
+            let seen = PerFrame {
+                frame: frame(0, millis),
+                items: vec![car],
+            };
+            reid.commit(seen, &[]).items[0].observed.heading
+        };
+        commit(0, car_with_heading(20.0, Duration::ZERO));
+        commit(100, car_with_heading(x_m, Duration::from_millis(100))).is_some()
+    };
+    assert!(keeps(20.5));
+    assert!(!keeps(26.0));
 }
 
 #[test]

@@ -219,6 +219,7 @@ mod tests {
             "yolov8n",
             "yolox_s",
             "yolox_nano",
+            "yolox_nano_features",
         ];
         assert_eq!(names, expected);
     }

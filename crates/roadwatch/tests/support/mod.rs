@@ -150,6 +150,8 @@ pub(crate) fn pandaset_config(shared: &Path, node: &str) -> String {
         "${ROADWATCH_SHARED:-../../shared}",
         &shared.display().to_string(),
     );
+    let models = format!("\"{}/models/", root().display());
+    let placed = placed.replace("\"../models/", &models);
     placed.replacen("[node]", &format!("[node]\n{node}"), 1)
 }
 
