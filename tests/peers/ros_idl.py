@@ -254,6 +254,15 @@ class MarkerArray(IdlStruct, typename="visualization_msgs::msg::dds_::MarkerArra
 
 @dataclass
 @final
+class KeyComponent(IdlStruct, typename="roadwatch_msgs::msg::dds_::KeyComponent_"):
+    name: str
+    x_px: float32
+    y_px: float32
+    score: float32
+
+
+@dataclass
+@final
 class Object(IdlStruct, typename="roadwatch_msgs::msg::dds_::Object_"):
     header: Header
     track_id: uint64
@@ -270,6 +279,9 @@ class Object(IdlStruct, typename="roadwatch_msgs::msg::dds_::Object_"):
     heading_known: bool
     yaw_rad: float64
     yaw_variance: float64
+    flip_probability: float32
+    heading_age: float32
+    components: sequence[KeyComponent]
     seen_by: sequence[str]
 
 

@@ -42,6 +42,10 @@ const DEFINITIONS: &[(&str, &str)] = &[
         include_str!("../msg/geometry_msgs/Vector3.msg"),
     ),
     (
+        "roadwatch_msgs/KeyComponent",
+        include_str!("../../../msgs/roadwatch_msgs/msg/KeyComponent.msg"),
+    ),
+    (
         "roadwatch_msgs/Object",
         include_str!("../../../msgs/roadwatch_msgs/msg/Object.msg"),
     ),

@@ -1,4 +1,4 @@
-"""Observation angles: a vehicle's heading relative to the ray from the camera to it (METHOD section 6).
+"""Observation angles: a vehicle's heading relative to the ray from the camera to it (docs/method.md, section 6).
 
 At 0 we see its rear, at pi its front, at pi/2 its left side (it goes to the left), at -pi/2 its right side.
 """

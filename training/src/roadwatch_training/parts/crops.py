@@ -1,4 +1,4 @@
-"""One vehicle's normalised crop (METHOD section 4).
+"""One vehicle's normalised crop (docs/method.md, section 4).
 
 Positions count from pixel centres, as cameras' cx and cy do; boxes are edges.
 """

@@ -17,13 +17,13 @@ from .components import COMPONENTS
 from .crops import crop, placement
 from .recipe import PartsExample
 
-# Of the height of a cuboid's hull, what a detector's box covers, from the bottom (METHOD section 3).
+# Of the height of a cuboid's hull, what a detector's box covers, from the bottom (docs/method.md, section 3).
 BOX_OF_HULL = 0.87
 
 
 @dataclass(frozen=True)
 class Clean:
-    """Which vehicles count: METHOD's clean filter, with a height of one's own."""
+    """Which vehicles count: docs/method.md's clean filter, with a height of one's own."""
 
     classes: frozenset[str] = frozenset({"car", "truck"})
     min_height_px: float = 40.0

@@ -50,7 +50,7 @@ class Vehicle:
 
     @property
     def is_clean_car(self) -> bool:
-        """METHOD's clean filter, section 9: what every score counts."""
+        """docs/method.md's clean filter, section 9: what every score counts."""
         height = self.seen_px[3] - self.seen_px[1]
         shares = self.occluded <= CLEAN_OCCLUDED and self.truncated <= CLEAN_TRUNCATED
         return self.class_name == "car" and height >= CLEAN_HEIGHT_PX and shares
