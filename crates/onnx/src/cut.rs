@@ -74,69 +74,83 @@ pub fn cut(model: &[u8], tensors: &[String]) -> Result<Vec<u8>, CutError> {
 
 fn cut_graph(graph: &[u8], tensors: &[String]) -> Result<Vec<u8>, CutError> {
     let all: Vec<Field<'_>> = fields(graph).collect::<Result<_, _>>()?;
-    let of = |number: u64| all.iter().filter(move |field| field.number == number);
-    let mut needed: HashSet<&[u8]> = tensors.iter().map(String::as_bytes).collect();
-    let mut nodes = Vec::new();
-    let mut outputs = HashSet::new();
-    // Every node comes after those that make its inputs.
-    for node in of(number::GRAPH_NODE).rev() {
-        let made = texts(node.content, number::NODE_OUTPUT)?;
-        if made.iter().any(|output| needed.contains(output)) {
-            needed.extend(texts(node.content, number::NODE_INPUT)?);
-            nodes.push(node);
-        }
-        outputs.extend(made);
-    }
-    if let Some(absent) = tensors
-        .iter()
-        .find(|name| !outputs.contains(name.as_bytes()))
-    {
-        return Err(CutError::NoTensor(absent.clone()));
-    }
-    let mut kept = Vec::new();
-    nodes.reverse();
-    for node in nodes {
-        kept.extend_from_slice(node.whole);
-    }
+    let nodes: Vec<Field<'_>> = of(&all, number::GRAPH_NODE).collect();
+    let (mut kept, needed) = nodes_before(&nodes, tensors)?;
     let mut constants = HashSet::new();
-    for constant in of(number::GRAPH_INITIALIZER) {
+    for constant in of(&all, number::GRAPH_INITIALIZER) {
         let name = texts(constant.content, number::TENSOR_NAME)?;
         if name.iter().any(|name| needed.contains(name)) {
             kept.extend_from_slice(constant.whole);
         }
         constants.extend(name);
     }
-    // Old exporters list constants among the inputs.
-    let inputs = of(number::GRAPH_INPUT).map(|input| name_of(input.content));
-    let inputs: Vec<&[u8]> = inputs.collect::<Result<_, _>>()?;
-    let images: Vec<_> = inputs
-        .into_iter()
-        .filter(|name| !constants.contains(name))
-        .collect();
-    let [image] = images[..] else {
-        return Err(CutError::Inputs(images.len()));
-    };
+    let image = image_name(&all, &constants)?;
     put(&mut kept, number::GRAPH_INPUT, &image_input(image));
     for tensor in tensors {
         let mut value = Vec::new();
         put(&mut value, number::VALUE_NAME, tensor.as_bytes());
         put(&mut kept, number::GRAPH_OUTPUT, &value);
     }
-    let rewritten = [
-        number::GRAPH_NODE,
-        number::GRAPH_INITIALIZER,
-        number::GRAPH_INPUT,
-        number::GRAPH_OUTPUT,
-        // Shapes of the old input's size.
-        number::GRAPH_VALUE_INFO,
-    ];
     for field in all
         .iter()
-        .filter(|field| !rewritten.contains(&field.number))
+        .filter(|field| !REWRITTEN.contains(&field.number))
     {
         kept.extend_from_slice(field.whole);
     }
     Ok(kept)
+}
+
+/// Fields of a graph that a cut writes anew, or leaves out: shapes of inner values are those of the old input.
+const REWRITTEN: [u64; 5] = [
+    number::GRAPH_NODE,
+    number::GRAPH_INITIALIZER,
+    number::GRAPH_INPUT,
+    number::GRAPH_OUTPUT,
+    number::GRAPH_VALUE_INFO,
+];
+
+fn of<'a>(all: &[Field<'a>], number: u64) -> impl Iterator<Item = Field<'a>> {
+    all.iter()
+        .copied()
+        .filter(move |field| field.number == number)
+}
+
+/// The nodes that `tensors` need, as they stand, and the names of everything that these take.
+fn nodes_before<'a>(
+    nodes: &[Field<'a>],
+    tensors: &'a [String],
+) -> Result<(Vec<u8>, HashSet<&'a [u8]>), CutError> {
+    let mut needed: HashSet<&[u8]> = tensors.iter().map(String::as_bytes).collect();
+    let mut kept = Vec::new();
+    let mut outputs = HashSet::new();
+    // Every node comes after those that make its inputs.
+    for node in nodes.iter().rev() {
+        let made = texts(node.content, number::NODE_OUTPUT)?;
+        if made.iter().any(|output| needed.contains(output)) {
+            needed.extend(texts(node.content, number::NODE_INPUT)?);
+            kept.push(node.whole);
+        }
+        outputs.extend(made);
+    }
+    let absent = tensors
+        .iter()
+        .find(|name| !outputs.contains(name.as_bytes()));
+    match absent {
+        Some(name) => Err(CutError::NoTensor(name.clone())),
+        None => Ok((kept.into_iter().rev().flatten().copied().collect(), needed)),
+    }
+}
+
+/// The name of the one input that is no constant: old exporters list constants among the inputs.
+fn image_name<'a>(all: &[Field<'a>], constants: &HashSet<&[u8]>) -> Result<&'a [u8], CutError> {
+    let inputs = of(all, number::GRAPH_INPUT).map(|input| name_of(input.content));
+    let inputs: Vec<&[u8]> = inputs.collect::<Result<_, _>>()?;
+    let images = inputs.into_iter().filter(|name| !constants.contains(name));
+    let images: Vec<&[u8]> = images.collect();
+    match images[..] {
+        [image] => Ok(image),
+        _ => Err(CutError::Inputs(images.len())),
+    }
 }
 
 /// Values of a repeated text field.

@@ -256,7 +256,7 @@ mod tests {
         let weight = |memory: &GroundMemory, millis| {
             memory.at(at(millis)).without(object(9)).information.norm()
         };
-        assert!(weight(&memory, 2_000) < 0.5 * weight(&memory, 0));
+        assert!(weight(&memory, 4_000) < 0.5 * weight(&memory, 0));
         memory.forget(at(20_000));
         assert!(memory.objects.is_empty());
     }

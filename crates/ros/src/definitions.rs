@@ -256,6 +256,7 @@ mod tests {
                 "builtin_interfaces/Time",
                 "geometry_msgs/Point",
                 "geometry_msgs/Vector3",
+                "roadwatch_msgs/KeyComponent",
             ]
         );
         assert_eq!(text.matches(&"=".repeat(80)).count(), named.len());

@@ -211,7 +211,12 @@ mod tests {
     fn what_disagrees_leaves_a_flip_open() {
         let ray = RayAngle::towards(1.0, 0.0);
         let agreed = decide(&location(&FOUR), ray, (&looks(0), &turned(5.0, 0.0)), None);
-        let torn = decide(&location(&FOUR), ray, (&looks(4), &turned(5.0, 0.4)), None);
+        let torn = decide(
+            &location(&FOUR),
+            ray,
+            (&Row::default(), &turned(5.0, 0.4)),
+            None,
+        );
         assert!(agreed.flip_probability < 0.02 && torn.flip_probability > 0.1);
         assert!(torn.flip_probability <= 0.5);
     }
