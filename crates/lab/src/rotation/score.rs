@@ -29,7 +29,7 @@ pub struct RotationScore {
     pub median_abs_deg: Option<f64>,
     /// Mean error of those that are not turned round, degrees.
     pub unflipped_mean_abs_deg: Option<f64>,
-    /// Share that is turned round: off by more than [`FLIP_DEG`].
+    /// Share that is turned round: off by more than 135 degrees (docs/method.md, section 5).
     pub flip_share: Option<f64>,
 }
 
