@@ -143,6 +143,7 @@ pub fn to_json(rig: &Rig, metrics: &Metrics, took: Duration, decoded: u64) -> Va
             "lost": counts.lost,
             "disconnected": counts.disconnected,
             "objects": counts.objects,
+            "unrotated": counts.unrotated,
         })
     };
     let edges = Edge::ALL
