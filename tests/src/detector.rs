@@ -59,6 +59,7 @@ impl WorldDetector {
         Some(Detection {
             class: ObjectClass::new(&seen.truth.class),
             score: score(TRUE_SCORE),
+            input_pixel_px: 1.0,
             box_px: BoxPx::new(
                 moved(exact.x_min).clamp(0.0, width_px),
                 moved(exact.y_min).clamp(0.0, height_px),
@@ -87,6 +88,7 @@ impl WorldDetector {
         Some(Detection {
             class: ObjectClass::new("car"),
             score: score(FALSE_SCORE),
+            input_pixel_px: 1.0,
             box_px: free?,
         })
     }

@@ -33,6 +33,19 @@ pub enum Unused {
     Outlier(f64),
 }
 
+impl Unused {
+    /// The kind of reason, to count many pictures by.
+    #[must_use]
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::Unreadable(_) => "cannot be read",
+            Self::NoCorners(_) => "show no board",
+            Self::Similar(_) => "show what another shows",
+            Self::Outlier(_) => "do not fit the others",
+        }
+    }
+}
+
 /// A picture that is not used.
 #[derive(Debug)]
 pub struct UnusedView {

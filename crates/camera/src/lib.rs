@@ -11,6 +11,7 @@ pub mod camera_info;
 pub mod counted;
 pub mod frame_rate;
 pub mod image_sequence;
+pub mod live_camera;
 mod mat;
 mod natural_order;
 pub mod playback;
@@ -26,6 +27,7 @@ pub use camera_info::{CameraInfo, CameraInfoError};
 pub use counted::{Counted, DecodeCount};
 pub use frame_rate::FrameRate;
 pub use image_sequence::{ImageSequence, SequenceError, StampedFile};
+pub use live_camera::{LiveCamera, LiveCameraError};
 pub use playback::{Due, Pace, Playback, PlaybackOptions, Repeat, Speed};
 pub use player::{Player, Recording};
 pub use rig_dataset::{

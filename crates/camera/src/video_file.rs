@@ -345,7 +345,7 @@ fn ffmpeg_capture(path: &Path) -> opencv::Result<Option<VideoCapture>> {
     Ok(Some(capture))
 }
 
-fn frame_size(capture: &VideoCapture) -> opencv::Result<ImageSize> {
+pub(crate) fn frame_size(capture: &VideoCapture) -> opencv::Result<ImageSize> {
     Ok(ImageSize {
         width_px: capture.get(CAP_PROP_FRAME_WIDTH)? as u32,
         height_px: capture.get(CAP_PROP_FRAME_HEIGHT)? as u32,

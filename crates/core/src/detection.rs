@@ -117,4 +117,7 @@ pub struct Detection {
     pub score: Score,
     /// Where it is in the camera's own image, pixels.
     pub box_px: BoxPx,
+    /// Side of one pixel of what the detector looked at, in pixels of the camera's own image: how coarsely the box
+    /// was seen. 1 for who looked at the image itself, 3 for a 1920 px wide image seen by a 640 px wide network.
+    pub input_pixel_px: f32,
 }

@@ -161,6 +161,7 @@ impl YoloDetector {
                 class: self.classes[usize::from(candidate.class)].clone(),
                 score: Score::new(candidate.score)?,
                 box_px: candidate.box_px,
+                input_pixel_px: prepared.letterbox.input_pixel_px(),
             })
         });
         PerFrame {

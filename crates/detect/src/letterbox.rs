@@ -88,6 +88,12 @@ impl Letterbox {
         self.image
     }
 
+    /// Side of one pixel of the network's input, in pixels of the image.
+    #[must_use]
+    pub fn input_pixel_px(&self) -> f32 {
+        self.gain.recip()
+    }
+
     /// Number of floats of one input: three planes of the network's input size.
     #[must_use]
     pub fn input_len(input: ImageSize) -> usize {

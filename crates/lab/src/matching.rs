@@ -139,6 +139,7 @@ mod tests {
         Detection {
             class: ObjectClass::new(class),
             score: Score::new(score).expect("a score"),
+            input_pixel_px: 1.0,
             box_px: BoxPx::new(x, 0.0, x + 40.0, 30.0).expect("a box"),
         }
     }

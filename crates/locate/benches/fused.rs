@@ -27,6 +27,7 @@ fn car((x_min, height_px): (f32, f32)) -> Detection {
     Detection {
         class: ObjectClass::new("car"),
         score: Score::new(0.8).expect("a share"),
+        input_pixel_px: 1.0,
         box_px: boxed.expect("a box"),
     }
 }

@@ -3,11 +3,12 @@
 use roadwatch_core::BoxPx;
 use std::f64::consts::SQRT_2;
 
-/// Standard deviation of each edge of a box: a floor in pixels and a share of the box's height, added as
-/// independent errors.
+/// Standard deviation of each edge of a box: a floor in pixels of what was looked at and a share of the box's height,
+/// added as independent errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoxNoise {
-    /// Floor, pixels: quantisation by the network's input and by annotators' hands.
+    /// Floor, pixels of what was looked at: of the network's input ([`BoxNoise::seen_through`]), of the image where
+    /// somebody looked at that.
     pub edge_px: f64,
     /// Share of the box's height.
     pub edge_share_of_height: f64,
@@ -26,6 +27,16 @@ impl Default for BoxNoise {
 }
 
 impl BoxNoise {
+    /// Of a box that was found at a coarser or finer scale than the image's: one pixel looked at is
+    /// `input_pixel_px` pixels of the image ([`roadwatch_core::Detection::input_pixel_px`]).
+    #[must_use]
+    pub fn seen_through(self, input_pixel_px: f32) -> Self {
+        Self {
+            edge_px: self.edge_px * f64::from(input_pixel_px),
+            ..self
+        }
+    }
+
     /// Standard deviation of one edge, pixels.
     #[must_use]
     pub fn edge_std_px(&self, box_px: &BoxPx) -> f64 {
@@ -49,6 +60,17 @@ impl BoxNoise {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_coarser_look_raises_the_floor_alone() {
+        let noise = BoxNoise {
+            edge_px: 1.0,
+            edge_share_of_height: 0.05,
+        };
+        let coarse = noise.seen_through(3.0);
+        assert_eq!(coarse.edge_px, 3.0);
+        assert_eq!(coarse.edge_share_of_height, 0.05);
+    }
 
     #[test]
     fn small_boxes_have_the_floor_and_large_ones_their_share() {

@@ -156,8 +156,9 @@ impl CameraLocator {
         let box_px = BoxPx::new(x_min, y_min, x_max, y_max)?;
         let class = self.sizes.get(&detection.class)?;
         let on_ground = class.standing == Standing::OnGround;
+        let noise = self.box_noise.seen_through(detection.input_pixel_px);
+        let boxed = (&box_px, &noise);
         if let (Strategy::Fused(fused), true) = (&self.strategy, on_ground) {
-            let boxed = (&box_px, &self.box_noise);
             let found = fused.locate(&self.camera, &detection.class, boxed, (heading, slopes))?;
             return self.fused(found);
         }
@@ -166,23 +167,22 @@ impl CameraLocator {
             Strategy::MeasuredFocal { focal_px } => (
                 Method::TriangleMeasuredF,
                 class.size,
-                self.triangle(*focal_px, class, &box_px),
+                self.triangle(*focal_px, class, boxed),
             ),
             Strategy::Table(table) if on_ground && table.table().covers(&detection.class) => (
                 Method::Table,
                 table.table().header().group.size,
-                table.locate(class, &box_px, &self.box_noise),
+                table.locate(class, &box_px, &noise),
             ),
             Strategy::Ground if on_ground => {
                 let hull = HullSpec::for_class(&detection.class);
-                let boxed = (&box_px, &self.box_noise);
                 let estimate = self.plane.locate(&self.camera, class, &hull, boxed);
                 (Method::Ground, class.size, estimate)
             }
             Strategy::Fy | Strategy::Table(_) | Strategy::Ground | Strategy::Fused(_) => (
                 Method::TriangleFy,
                 class.size,
-                self.triangle(fy, class, &box_px),
+                self.triangle(fy, class, boxed),
             ),
         };
         self.location(estimate?, size, method)
@@ -197,8 +197,13 @@ impl CameraLocator {
         })
     }
 
-    fn triangle(&self, focal_px: f64, class: &ClassSize, box_px: &BoxPx) -> Option<Estimate> {
-        locate_by_triangle(&self.camera, focal_px, class, box_px, &self.box_noise)
+    fn triangle(
+        &self,
+        focal_px: f64,
+        class: &ClassSize,
+        (box_px, noise): (&BoxPx, &BoxNoise),
+    ) -> Option<Estimate> {
+        locate_by_triangle(&self.camera, focal_px, class, box_px, noise)
     }
 
     /// `None` for what lies behind the camera, too far away, or is not a number.

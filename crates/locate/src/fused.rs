@@ -129,9 +129,7 @@ impl FusedLocator {
                 covariance: Covariance::new(covariance),
             },
             headings: mixture.headings(away.y.atan2(away.x)),
-            ground: mixture
-                .best()
-                .and_then(|best| view.ground_reading(shape, &seen, best, start)),
+            ground: mixture.best().and_then(|best| view.ground_reading(best)),
             size: *size,
         })
     }

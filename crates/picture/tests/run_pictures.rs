@@ -41,6 +41,7 @@ fn car(ahead_m: f64) -> Track {
         detection: Detection {
             class: ObjectClass::new("car"),
             score: Score::new(0.9).expect("a score"),
+            input_pixel_px: 1.0,
             box_px: BoxPx::new(140.0, 80.0, 180.0, 120.0).expect("a box"),
         },
         location: Location {

@@ -147,6 +147,7 @@ mod tests {
         let detection = Detection {
             class: ObjectClass::new(class),
             score: Score::new(0.5).expect("a score"),
+            input_pixel_px: 1.0,
             box_px: BoxPx::new(left, 0.0, left + 10.0, 10.0).expect("a box"),
         };
         let heading = heading_age_millis.map(|millis| KeptHeading {

@@ -67,6 +67,7 @@ pub fn seen_by_labels(opened: &OpenedScene) -> Vec<SeenVehicle> {
         let detection = Detection {
             class: ObjectClass::new(&object.class),
             score: Score::new(1.0)?,
+            input_pixel_px: 1.0,
             box_px: object.seen_px()?,
         };
         let target = Arc::new(Target::new(object, camera, true));

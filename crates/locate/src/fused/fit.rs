@@ -61,7 +61,7 @@ pub(super) struct Shape {
     pub(super) heading_std_rad: f64,
 }
 
-/// One explanation of the box: a heading, and which edge is hidden, if any.
+/// One explanation of the box: a heading, with or without a hidden edge.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Explanation {
     /// Its evidence is `scale * exp(-cost / 2)`, up to a constant of the box.
@@ -72,8 +72,9 @@ pub(super) struct Explanation {
     pub(super) covariance: Matrix2<f64>,
     /// Which heading of the shape.
     pub(super) heading: usize,
-    /// The edge that something hides, if any.
-    pub(super) hidden: Option<usize>,
+    /// Mean and variance of the ground's height, in standard deviations of what was expected of it; `None` where
+    /// an edge is hidden.
+    pub(super) ground: Option<(f64, f64)>,
     /// What the box adds to that heading, and the deviation that is left, radians.
     pub(super) turn_rad: f64,
     pub(super) turn_std_rad: f64,
@@ -151,21 +152,11 @@ impl View {
     }
 
     /// What the box says of the ground by its best explanation; `None` where an edge is hidden.
-    pub(super) fn ground_reading(
-        &self,
-        shape: &Shape,
-        seen: &SeenBox,
-        best: &Explanation,
-        start: Vector2<f64>,
-    ) -> Option<GroundReading> {
-        if best.hidden.is_some() {
-            return None;
-        }
-        let fit = self.fit(shape, best.heading, seen, (best.place, start))?;
+    pub(super) fn ground_reading(&self, best: &Explanation) -> Option<GroundReading> {
         let distance_m = (best.place - self.eye.xy()).norm();
         let eye_height_m = self.eye.z - self.ground.height_m(best.place);
         self.ground
-            .reading((best.place, distance_m), eye_height_m, fit.ground())
+            .reading((best.place, distance_m), eye_height_m, best.ground?)
     }
 
     /// What one standard deviation of everything unknown does to the outline's edges.
@@ -234,7 +225,11 @@ impl Fit {
     pub(super) fn explanations(&self, seen: &SeenBox) -> impl Iterator<Item = Explanation> {
         let HiddenShares { side, foot } = self.hidden;
         let visible = 1.0 - 2.0 * side - foot;
-        let whole = self.explain(&self.normal, visible * self.density, None).0;
+        let whole = self.explain(&self.normal, visible * self.density).0;
+        let whole = Explanation {
+            ground: Some(self.ground()),
+            ..whole
+        };
         let hidden = [
             (LEFT, 1.0, side, seen.width()),
             (RIGHT, -1.0, side, seen.width()),
@@ -247,7 +242,7 @@ impl Fit {
             // One factor of the density of four Gaussian edges gives way to a uniform one.
             let density = self.density * (TAU / own).sqrt() / most;
             let normal = self.normal.without(edge, own);
-            let (explanation, step) = self.explain(&normal, share * density, Some(edge));
+            let (explanation, step) = self.explain(&normal, share * density);
             let left_over = self.residual[edge] - (self.by_place.row(edge) * step).x;
             (outside..most)
                 .contains(&(left_over * inward))
@@ -258,7 +253,8 @@ impl Fit {
 
     /// Mean and variance of the ground's height by all four edges, in standard deviations of what was expected
     /// of it.
-    pub(super) fn ground(&self) -> (f64, f64) {
+    #[inline(always)]
+    fn ground(&self) -> (f64, f64) {
         self.normal.of_cause(
             &self.precision,
             (&self.by_place, &self.residual),
@@ -266,14 +262,9 @@ impl Fit {
         )
     }
 
-    /// The best place without a hidden edge, and the step that leads there.
+    /// The best place by a form of the normal equations, and the step that leads there.
     #[inline(always)]
-    fn explain(
-        &self,
-        normal: &Normal,
-        density: f64,
-        hidden: Option<usize>,
-    ) -> (Explanation, Vector2<f64>) {
+    fn explain(&self, normal: &Normal, density: f64) -> (Explanation, Vector2<f64>) {
         let solved = normal.solve();
         let explanation = Explanation {
             scale: density * solved.determinant.sqrt(),
@@ -281,7 +272,7 @@ impl Fit {
             place: self.place + self.axes * solved.step,
             covariance: self.axes * solved.covariance * self.axes.transpose(),
             heading: self.heading,
-            hidden,
+            ground: None,
             turn_rad: solved.turn * self.heading_std_rad,
             turn_std_rad: solved.turn_variance.max(0.0).sqrt() * self.heading_std_rad,
         };

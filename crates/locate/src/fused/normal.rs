@@ -79,6 +79,7 @@ impl Normal {
 
     /// Mean and variance of a cause that is part of the covariance, in its standard deviations, given what one
     /// of them does to the edges.
+    #[inline(always)]
     pub(super) fn of_cause(
         &self,
         precision: &Matrix4<f64>,

@@ -108,6 +108,7 @@ pub(crate) fn detection(class: &str, box_px: BoxPx) -> Detection {
     Detection {
         class: ObjectClass::new(class),
         score: Score::new(0.9).expect("a score"),
+        input_pixel_px: 1.0,
         box_px,
     }
 }

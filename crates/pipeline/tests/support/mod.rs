@@ -112,6 +112,7 @@ impl Detector for OneBoxDetector {
             let detection = Detection {
                 class: ObjectClass::new("car"),
                 score: Score::new(0.5).expect("a score"),
+                input_pixel_px: 1.0,
                 box_px: BoxPx::new(0.0, 0.0, 1.0, 1.0).expect("a box"),
             };
             Ok(PerFrame {

@@ -32,6 +32,7 @@ fn detection(class: &str, left_px: f32) -> Detection {
     Detection {
         class: ObjectClass::new(class),
         score: Score::new(0.5).expect("a score"),
+        input_pixel_px: 1.0,
         box_px: BoxPx::new(left_px, 0.0, left_px + 10.0, 10.0).expect("a box"),
     }
 }

@@ -64,12 +64,13 @@ pub struct CalibrateFocalArgs {
 /// Arguments of `calibrate camera`.
 #[derive(Debug, Args)]
 #[command(
-    group = ArgGroup::new("source").required(true).args(["images", "video", "drive"]),
+    group = ArgGroup::new("source").required(true).args(["images", "video", "drive", "live"]),
     after_help = "Show the board at all distances, in all corners of the image, and tilted. About 20 pictures do; \
     12 good ones suffice. --board counts inner corners: a board of 9 x 7 squares has 8 x 6.\n\n\
     Examples:\n  \
     roadwatch calibrate camera --board 8x6 --square-m 0.108 --images pictures -o front.yaml --picture front.png\n  \
     roadwatch calibrate camera --board 8x6 --square-m 0.108 --video board.mp4 --fisheye -o left.yaml\n  \
+    roadwatch calibrate camera --board 8x6 --square-m 0.108 --live /dev/video0 -o front.yaml\n  \
     roadwatch calibrate camera --charuco 5x7 --square-m 0.04 --marker-m 0.03 --dictionary 5x5_100 --images 'p/*.png' -o cam.yaml\n\n\
     The daemon reads what is written: camera_info = \"file:///etc/roadwatch/front.yaml\" in a [[camera]] table."
 )]
@@ -103,6 +104,13 @@ pub struct CalibrateCameraArgs {
     /// A rig dataset, with --camera.
     #[arg(long, value_name = "DATASET", requires = "camera")]
     pub drive: Option<PathBuf>,
+    /// A camera that runs: a device or an address. Move the board; views that differ are taken until there are
+    /// enough. Ctrl-C ends earlier, with the views so far.
+    #[arg(long, value_name = "/dev/videoN|URL")]
+    pub live: Option<String>,
+    /// With --live: how many different views are enough.
+    #[arg(long, value_name = "N", default_value_t = 25, requires = "live", value_parser = clap::value_parser!(u32).range(12..=1000))]
+    pub views: u32,
     /// Name of the camera.
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,

@@ -10,5 +10,6 @@ mod progress;
 pub mod rotation;
 pub mod run;
 mod scoring;
+mod signals;
 pub mod study;
 pub mod table;

@@ -1,6 +1,6 @@
 //! `roadwatch run`.
 
-use super::{output::say, scoring::Scoring};
+use super::{output::say, scoring::Scoring, signals::stop_on_signals};
 use crate::{
     cli::{Pace, RunArgs},
     clock::wall_time,
@@ -14,15 +14,8 @@ use roadwatch_camera::{Pace as PlaybackPace, PlaybackOptions, Repeat, Speed};
 use roadwatch_picture::{PictureSink, SCENE_FILE, VIEWS_FILE};
 use roadwatch_pipeline::{Metrics, NamedSink, Overload, PipelineOptions};
 use roadwatch_ros::{BagSink, LogTime, RosSink};
-use signal_hook::{
-    consts::{SIGINT, SIGTERM},
-    flag,
-};
 use std::{
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering},
-    },
+    sync::{Arc, atomic::Ordering},
     time::{Duration, Instant},
 };
 
@@ -171,15 +164,4 @@ fn sinks(args: &RunArgs, session: &Session) -> Result<Vec<NamedSink>, Failure> {
         });
     }
     Ok(sinks)
-}
-
-fn stop_on_signals() -> Result<Arc<AtomicBool>, Failure> {
-    let stop = Arc::new(AtomicBool::new(false));
-    for signal in [SIGINT, SIGTERM] {
-        // A second signal ends the process at once, should the first not help.
-        flag::register_conditional_default(signal, Arc::clone(&stop))
-            .context("signals cannot be handled")?;
-        flag::register(signal, Arc::clone(&stop)).context("signals cannot be handled")?;
-    }
-    Ok(stop)
 }

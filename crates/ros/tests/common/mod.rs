@@ -102,6 +102,7 @@ fn detection(class: &str) -> Detection {
     Detection {
         class: ObjectClass::new(class),
         score: Score::new(0.75).expect("a share"),
+        input_pixel_px: 1.0,
         box_px: BoxPx::new(100.0, 200.0, 180.0, 250.0).expect("an area"),
     }
 }

@@ -1,18 +1,32 @@
-//! Pictures of a board: from files, a video, or a camera of a rig dataset.
+//! Pictures of a board: from files, a video, a camera of a rig dataset, or one that runs.
 
 use super::{camera::Looked, still};
-use crate::{cli::CalibrateCameraArgs, commands::progress::Progress, failure::Failure};
+use crate::{
+    cli::CalibrateCameraArgs,
+    commands::{progress::Progress, signals::stop_on_signals},
+    failure::Failure,
+};
 use anyhow::{Context as _, anyhow};
 use roadwatch_calibrate::{Alike, Board, BoardViews, Unused};
-use roadwatch_camera::{AnyRecording, Recording as _, RigDataset, VideoFile, video_size};
+use roadwatch_camera::{
+    AnyRecording, LiveCamera, Recording as _, RigDataset, VideoFile, video_size,
+};
 use roadwatch_core::{Pixels, Timestamp};
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::atomic::Ordering,
+};
 
+/// So many images of a running camera without a new view, and who holds the board is told why.
+const HINT_AFTER: u32 = 100;
 /// Which files are pictures.
 const EXTENSIONS: [&str; 5] = ["jpg", "jpeg", "png", "bmp", "tiff"];
 
 /// Looks for the board in every picture.
 pub(super) fn look(args: &CalibrateCameraArgs, board: Board) -> Result<Looked, Failure> {
+    if let Some(name) = &args.live {
+        return look_live(name, args.views as usize, board);
+    }
     let looked = match (&args.images, &args.video, &args.drive) {
         (Some(pattern), _, _) => look_at_files(&list(pattern)?, board),
         (_, Some(file), _) => {
@@ -25,7 +39,7 @@ pub(super) fn look(args: &CalibrateCameraArgs, board: Board) -> Result<Looked, F
             let dataset = RigDataset::open(folder).map_err(anyhow::Error::from)?;
             look_at_frames(args, recording(&dataset, args.camera.as_deref())?, board)
         }
-        (None, None, None) => Err(anyhow!("--images, --video or --drive is missing")),
+        (None, None, None) => Err(anyhow!("--images, --video, --drive or --live is missing")),
     };
     Ok(looked?)
 }
@@ -104,6 +118,47 @@ fn look_at_frames(
         }
         frame += 1;
         progress.set(u64::from(frame));
+    }
+    progress.finish();
+    Ok((views, shown))
+}
+
+/// Looks at what a camera sees now, until enough different views are there or somebody says stop.
+fn look_live(name: &str, enough: usize, board: Board) -> Result<Looked, Failure> {
+    let stop = stop_on_signals()?;
+    let mut camera = LiveCamera::open(name).map_err(anyhow::Error::from)?;
+    eprintln!("move the board in front of the camera; Ctrl-C ends with the views so far");
+    let mut progress = Progress::new(enough as u64, "different views");
+    let mut views = BoardViews::new(board, Alike::UseFirst);
+    let mut shown = None;
+    let mut since_last = 0_u32;
+    for frame in 0_u64.. {
+        if views.used.len() >= enough || stop.load(Ordering::Relaxed) {
+            break;
+        }
+        let picture = match camera.next_image() {
+            Ok(picture) => picture,
+            Err(error) if views.used.is_empty() => return Err(anyhow::Error::from(error).into()),
+            Err(error) => {
+                eprintln!("{error}; going on with the views so far");
+                break;
+            }
+        };
+        let before = views.used.len();
+        push(&mut views, &format!("frame {frame}"), picture, &mut shown)?;
+        since_last = if views.used.len() > before {
+            0
+        } else {
+            since_last + 1
+        };
+        if let (Some(last), true) = (views.unused.last(), since_last == HINT_AFTER) {
+            eprintln!(
+                "{HINT_AFTER} images without a new view: they {}",
+                last.why.kind()
+            );
+            since_last = 0;
+        }
+        progress.set(views.used.len() as u64);
     }
     progress.finish();
     Ok((views, shown))

@@ -6,7 +6,7 @@ use anyhow::{Context as _, anyhow};
 use roadwatch_calibrate::{Board, BoardKind, BoardViews, CameraCalibration, Lens, calibrate};
 use roadwatch_camera::CameraInfo;
 use roadwatch_picture::{SeenAndPut, corners_view};
-use std::{fs, path::Path};
+use std::{collections::BTreeMap, fs, path::Path};
 
 const DEFAULT_NAME: &str = "camera";
 
@@ -23,9 +23,7 @@ pub fn run(args: &CalibrateCameraArgs) -> Result<(), Failure> {
         Lens::PlumbBob
     };
     let found = calibrate(board, &mut views, lens);
-    for view in &views.unused {
-        eprintln!("not used: {}: {}", view.name, view.why);
-    }
+    say_unused(args, &views);
     let found = found.map_err(anyhow::Error::from)?;
     let name = args.camera.as_deref().unwrap_or(DEFAULT_NAME);
     if args.json {
@@ -52,6 +50,23 @@ pub fn run(args: &CalibrateCameraArgs) -> Result<(), Failure> {
         eprintln!("written: {}", file.display());
     }
     Ok(())
+}
+
+/// Chosen pictures one by one; frames, of which most are alike, by how many there are of each kind.
+fn say_unused(args: &CalibrateCameraArgs, views: &BoardViews) {
+    if args.images.is_some() {
+        for view in &views.unused {
+            eprintln!("not used: {}: {}", view.name, view.why);
+        }
+        return;
+    }
+    let mut kinds = BTreeMap::new();
+    for view in &views.unused {
+        *kinds.entry(view.why.kind()).or_insert(0) += 1;
+    }
+    for (kind, count) in kinds {
+        eprintln!("not used: {count} frames that {kind}");
+    }
 }
 
 fn board(args: &CalibrateCameraArgs) -> Result<Board, anyhow::Error> {
