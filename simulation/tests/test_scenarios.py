@@ -146,3 +146,12 @@ def test_every_kind_of_vehicle_is_shown_and_none_stands_before_another():
             (np.arctan2(*frame[index].corners().T[::-1]) for index in visible))
         assert all(before[1] < after[0] for before, after in zip(angles, angles[1:], strict=False))
         assert -0.602 < angles[0][0] and angles[-1][1] < 0.602
+
+
+def test_cars_in_a_row_stand_side_by_side_and_face_away():
+    scene = build_scenario("car_row", 0, 6)
+    for frame, ahead in enumerate((15.0, 30.0, 45.0, 15.0, 30.0, 45.0)):
+        shown = [pose for pose in poses(scene, frame) if pose[0, 3] > 0.0]
+        assert sorted(pose[1, 3] for pose in shown) == pytest.approx([-8.0, 0.0, 8.0])
+        assert all(pose[0, 3] == pytest.approx(ahead) and pose[0, 0] == pytest.approx(1.0) for pose in shown)
+    assert len({car.model.size_lwh_m for car in scene.objects}) == 6

@@ -74,17 +74,7 @@ impl RigCamera {
         &self,
         ground_z_m: f64,
     ) -> Result<Transform<BaseLink, CameraGround>, LooksVertical> {
-        let axis = self.base_from_optical.rotate(Vector3::z());
-        let angle_deg = axis.xy().norm().atan2(axis.z.abs()).to_degrees();
-        if angle_deg < MIN_ANGLE_FROM_VERTICAL_DEG {
-            return Err(LooksVertical { angle_deg });
-        }
-        let foot = self.base_from_optical.origin();
-        let azimuth = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), axis.y.atan2(axis.x));
-        Ok(Transform::new(Isometry3::from_parts(
-            Translation3::new(foot.x(), foot.y(), ground_z_m),
-            azimuth,
-        )))
+        self.base_from_optical.to_ground(ground_z_m)
     }
 
     /// Horizontal distance from the camera's foot to a point (`range_m`), metres.
@@ -98,6 +88,29 @@ impl RigCamera {
     #[must_use]
     pub fn depth_m(&self, point: Point<BaseLink>) -> f64 {
         (self.base_from_optical.inverse() * point).z()
+    }
+}
+
+impl Transform<BaseLink, Optical> {
+    /// The camera-ground space of a camera at this pose, over ground at `ground_z_m` of base_link.
+    ///
+    /// # Errors
+    /// See [`RigCamera::base_from_ground`].
+    pub fn to_ground(
+        &self,
+        ground_z_m: f64,
+    ) -> Result<Transform<BaseLink, CameraGround>, LooksVertical> {
+        let axis = self.rotate(Vector3::z());
+        let angle_deg = axis.xy().norm().atan2(axis.z.abs()).to_degrees();
+        if angle_deg < MIN_ANGLE_FROM_VERTICAL_DEG {
+            return Err(LooksVertical { angle_deg });
+        }
+        let foot = self.origin();
+        let azimuth = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), axis.y.atan2(axis.x));
+        Ok(Transform::new(Isometry3::from_parts(
+            Translation3::new(foot.x(), foot.y(), ground_z_m),
+            azimuth,
+        )))
     }
 }
 

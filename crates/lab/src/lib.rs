@@ -30,6 +30,7 @@ pub use dataset_format::{DatasetFormat, OpenDatasetError};
 pub use evaluate::{Evaluation, LostImages, MethodUnderTest, evaluate};
 pub use labelled_table::{LabelCounts, LabelledTableError, LabelledTableSpec, table_from_labels};
 pub use matching::TruthFilter;
+pub use plots::draw_position_curve;
 pub use recorder::{Recorded, Recorder};
 pub use report::{LatencyMs, Report, ReportError};
 pub use rotation::{RotationReport, RowFilter, RowsFrom};

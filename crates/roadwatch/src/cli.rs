@@ -9,7 +9,7 @@ mod table;
 
 pub use calibrate::{
     BoxesFrom, CalibrateCameraArgs, CalibrateCommand, CalibrateFocalArgs, CalibrateMountArgs,
-    SolvedPart, TrustedPart,
+    CalibrateRotationArgs, SolvedPart, TrustedPart,
 };
 pub use evaluate::{EvaluateArgs, FormatName};
 pub use models::{ModelsCommand, ModelsFetchArgs, ModelsListArgs, ModelsVerifyArgs};

@@ -11,9 +11,13 @@ use roadwatch_core::{FrameSource, Locator, Rig, RigCamera, Timestamp, error_chai
 use roadwatch_detect::{DetectorError, NetworkError, Runtime, YoloDetector};
 use roadwatch_onnx::SessionOptions;
 use roadwatch_pipeline::perceive::Rotating;
-use roadwatch_rotate::{ComponentModelError, ComponentNetwork, Forest, KeyComponentEstimator};
+use roadwatch_rotate::{
+    Calibration, ComponentModelError, ComponentNetwork, EstimatorError, Forest,
+    KeyComponentEstimator, PositionCurve,
+};
 use std::sync::Arc;
 
+const CURVE_KEY: &str = "rotation.position_curve";
 /// Beginning of a rig without any stamp: one second, as tf takes zero for "latest".
 const UNSTAMPED_START: Timestamp = Timestamp::from_nanos(1_000_000_000);
 
@@ -131,8 +135,23 @@ fn open_rotation(
     let network = network.map_err(|error| (model_key(&error), error_chain(&error)))?;
     let forest = Forest::read(&rotation.forest);
     let forest = forest.map_err(|error| ("rotation.forest", error_chain(&error)))?;
-    let estimator = KeyComponentEstimator::new(&rig.rig, network, forest, rotation.options.clone());
-    estimator.map_err(|error| ("rotation.forest", error_chain(&error)))
+    let calibration = match &rotation.position_curve {
+        None => Calibration::Ray,
+        Some(file) => {
+            let curve = PositionCurve::read(file);
+            Calibration::Curve(curve.map_err(|error| (CURVE_KEY, error_chain(&error)))?)
+        }
+    };
+    let options = rotation.options.clone();
+    let parts = (network, forest);
+    let estimator = KeyComponentEstimator::new(&rig.rig, parts, &calibration, options);
+    estimator.map_err(|error| {
+        let key = match error {
+            EstimatorError::Pose { .. } => CURVE_KEY,
+            EstimatorError::Components { .. } | EstimatorError::Facing { .. } => "rotation.forest",
+        };
+        (key, error_chain(&error))
+    })
 }
 
 fn model_key(error: &ComponentModelError) -> &'static str {

@@ -55,6 +55,12 @@ impl ObservationAngle {
 }
 
 impl RayAngle {
+    /// Of an angle in radians, wrapped.
+    #[must_use]
+    pub fn new(angle_rad: f64) -> Self {
+        Self(wrapped(angle_rad))
+    }
+
     /// Of the horizontal vector from the camera to the object in base_link, metres.
     #[must_use]
     pub fn towards(dx_m: f64, dy_m: f64) -> Self {

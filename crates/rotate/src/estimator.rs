@@ -6,12 +6,15 @@ use crate::{
     decision::decide,
     forest::Forest,
     network::ComponentNetwork,
+    position_curve::PositionCurve,
     row::Row,
 };
+use nalgebra::Vector3;
 use roadwatch_core::{
-    BoxPx, Frame, Heading, Located, ObjectClass, Pixels, Rig, Rotation, RotationError,
-    RotationEstimator, SeenComponent,
-    space::{BaseLink, Point},
+    BoxPx, CameraName, Frame, Heading, Located, ObjectClass, Pixels, Rig, RigCamera, Rotation,
+    RotationError, RotationEstimator, SeenComponent,
+    rig::LooksVertical,
+    space::{BaseLink, CameraGround, Point, Transform},
 };
 use std::sync::Arc;
 
@@ -24,9 +27,26 @@ pub struct RotationOptions {
     pub min_height_px: f32,
 }
 
-/// A forest that does not go with a model.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ForestMismatch {
+/// What turns an observation angle into a heading (docs/method.md, section 6).
+#[derive(Clone, Debug, PartialEq)]
+pub enum Calibration {
+    /// The ray to the object, from the camera's pose and the object's place.
+    Ray,
+    /// The paper's curve of where the object stands across the camera.
+    Curve(PositionCurve),
+}
+
+/// Parts that do not go together.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EstimatorError {
+    /// A curve over the ground before a camera that looks up or down.
+    #[error("camera `{camera}` has no ground ahead for a position curve")]
+    Pose {
+        /// The camera.
+        camera: CameraName,
+        /// Why.
+        source: LooksVertical,
+    },
     /// It was grown on other components.
     #[error(
         "the forest was grown on components {forest}, the model finds {model}: train it again on rows of this model"
@@ -138,8 +158,8 @@ impl RowReader {
 pub struct KeyComponentEstimator {
     reader: RowReader,
     forest: Forest,
-    /// Where each camera is, by its number.
-    eyes: Vec<Point<BaseLink>>,
+    /// How each camera's angles become headings, by its number.
+    cameras: Vec<CameraCalibration>,
     options: RotationOptions,
     features: Vec<f64>,
 }
@@ -148,21 +168,21 @@ impl KeyComponentEstimator {
     /// An estimator for the cameras of a rig.
     ///
     /// # Errors
-    /// When the forest was grown on what another model finds.
+    /// When the forest was grown on what another model finds, or a camera cannot be calibrated so.
     pub fn new(
         rig: &Rig,
-        network: ComponentNetwork,
-        forest: Forest,
+        (network, forest): (ComponentNetwork, Forest),
+        calibration: &Calibration,
         options: RotationOptions,
-    ) -> Result<Self, ForestMismatch> {
+    ) -> Result<Self, EstimatorError> {
         if forest.components() != network.components() {
-            return Err(ForestMismatch::Components {
+            return Err(EstimatorError::Components {
                 forest: forest.components().join(", "),
                 model: network.components().join(", "),
             });
         }
         if forest.facing_bins() != network.facing_bins() {
-            return Err(ForestMismatch::Facing {
+            return Err(EstimatorError::Facing {
                 forest: forest.facing_bins(),
                 model: network.facing_bins(),
             });
@@ -171,12 +191,67 @@ impl KeyComponentEstimator {
         Ok(Self {
             reader: RowReader::new(network),
             forest,
-            eyes: cameras
-                .map(|camera| camera.base_from_optical.origin())
-                .collect(),
+            cameras: cameras
+                .map(|camera| CameraCalibration::new(camera, rig.ground_z_m, calibration))
+                .collect::<Result<_, _>>()?,
             options,
             features: Vec::new(),
         })
+    }
+}
+
+/// One camera's.
+enum CameraCalibration {
+    Ray {
+        eye: Point<BaseLink>,
+    },
+    Curve {
+        curve: PositionCurve,
+        ground_from_base: Transform<CameraGround, BaseLink>,
+        /// The camera's own direction in base_link, radians.
+        azimuth_rad: f64,
+    },
+}
+
+impl CameraCalibration {
+    fn new(
+        camera: &RigCamera,
+        ground_z_m: f64,
+        calibration: &Calibration,
+    ) -> Result<Self, EstimatorError> {
+        let Calibration::Curve(curve) = calibration else {
+            let eye = camera.base_from_optical.origin();
+            return Ok(Self::Ray { eye });
+        };
+        let base_from_ground = camera.base_from_ground(ground_z_m);
+        let base_from_ground = base_from_ground.map_err(|source| EstimatorError::Pose {
+            camera: camera.name.clone(),
+            source,
+        })?;
+        let ahead = base_from_ground.rotate(Vector3::x());
+        Ok(Self::Curve {
+            curve: curve.clone(),
+            ground_from_base: base_from_ground.inverse(),
+            azimuth_rad: ahead.y.atan2(ahead.x),
+        })
+    }
+
+    /// What is added to the observation angle of an object at that place, to give its yaw in base_link.
+    fn ray(&self, place: Point<BaseLink>) -> RayAngle {
+        match self {
+            Self::Ray { eye } => {
+                let away = place.coords - eye.coords;
+                RayAngle::towards(away.x, away.y)
+            }
+            Self::Curve {
+                curve,
+                ground_from_base,
+                azimuth_rad,
+            } => {
+                let loc_x_m = -(*ground_from_base * place).y();
+                RayAngle::new(azimuth_rad + curve.ray(loc_x_m).radians())
+            }
+        }
     }
 }
 
@@ -203,13 +278,12 @@ impl RotationEstimator for KeyComponentEstimator {
             .reader
             .read(pixels, &boxes)
             .map_err(RotationError::new)?;
-        let eye = self.eyes[frame.camera.index()];
+        let calibration = &self.cameras[frame.camera.index()];
         let mut rotations = Vec::with_capacity(objects.len());
         for (seen, (located, before)) in seen.into_iter().zip(objects) {
             rotations.push(seen.map(|seen| {
                 let location = &located.location;
-                let away = location.position.coords - eye.coords;
-                let ray = RayAngle::towards(away.x, away.y);
+                let ray = calibration.ray(location.position);
                 let turned = self.forest.turn(&seen.row, &mut self.features);
                 Rotation {
                     heading: decide(location, ray, (&seen.row, &turned), before.as_ref()),

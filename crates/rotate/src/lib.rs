@@ -11,14 +11,16 @@ pub mod decision;
 pub mod estimator;
 pub mod forest;
 pub mod network;
+pub mod position_curve;
 pub mod recipe;
 pub mod row;
 
 pub use angle::{ObservationAngle, RayAngle, Yaw};
 pub use crop::Crop;
 pub use decision::decide;
-pub use estimator::{KeyComponentEstimator, RotationOptions};
+pub use estimator::{Calibration, EstimatorError, KeyComponentEstimator, RotationOptions};
 pub use forest::{Forest, ForestFileError, ForestOptions, Turned};
 pub use network::{ComponentModelError, ComponentNetwork};
+pub use position_curve::{PositionCurve, PositionCurveError};
 pub use recipe::Recipe;
 pub use row::{Component, LabelledRow, Row, RowTable};

@@ -1,7 +1,10 @@
 //! The rotational data frame: one row per object, what was found of its key components (docs/method.md, section 5).
 
-use crate::angle::ObservationAngle;
-use roadwatch_core::camera_model::Pixel;
+use crate::angle::{ObservationAngle, RayAngle};
+use roadwatch_core::{
+    camera_model::Pixel,
+    space::{CameraGround, Point},
+};
 use std::{io, path::Path};
 
 /// One component in a crop.
@@ -76,8 +79,8 @@ pub struct LabelledRow {
     pub row: Row,
     /// The object's angle to the ray it is seen along.
     pub angle: ObservationAngle,
-    /// Horizontal distance from the camera, metres.
-    pub range_m: f64,
+    /// The middle of its footprint: LocX is `-y`, LocY is `x` (docs/method.md, section 3).
+    pub place: Point<CameraGround>,
     /// Height of the box in the image, pixels.
     pub box_height_px: f64,
 }
@@ -127,11 +130,31 @@ pub enum RowError {
 }
 
 /// Columns before those of the components.
-const LEADING: [&str; 4] = ["observation_deg", "range_m", "box_height_px", "aspect"];
+const LEADING: [&str; 5] = [
+    "observation_deg",
+    "loc_x_m",
+    "loc_y_m",
+    "box_height_px",
+    "aspect",
+];
+
+impl LabelledRow {
+    /// Horizontal distance from the camera, metres.
+    #[must_use]
+    pub fn range_m(&self) -> f64 {
+        self.place.x().hypot(self.place.y())
+    }
+
+    /// The ray it is seen along, against the camera's own direction.
+    #[must_use]
+    pub fn ray(&self) -> RayAngle {
+        RayAngle::towards(self.place.x(), self.place.y())
+    }
+}
 
 impl RowTable {
-    /// Writes the table as CSV: `observation_deg, range_m, box_height_px, aspect`, then `<name>_x` (share of the
-    /// crop's width; empty where not found) and `<name>_score` per component, then `facing_0`, ….
+    /// Writes the table as CSV: `observation_deg, loc_x_m, loc_y_m, box_height_px, aspect`, then `<name>_x` (share
+    /// of the crop's width; empty where not found) and `<name>_score` per component, then `facing_0`, ….
     ///
     /// # Errors
     /// When the disk does not take it.
@@ -141,7 +164,8 @@ impl RowTable {
         for labelled in &self.rows {
             let leading = [
                 labelled.angle.radians().to_degrees(),
-                labelled.range_m,
+                -labelled.place.y(),
+                labelled.place.x(),
                 labelled.box_height_px,
                 labelled.row.aspect,
             ];
@@ -227,10 +251,10 @@ impl Cells<'_> {
         let facing = facing.map(|at| Ok(self.number(at)? as f32));
         Ok(LabelledRow {
             angle: ObservationAngle::new(self.number(0)?.to_radians()),
-            range_m: self.number(1)?,
-            box_height_px: self.number(2)?,
+            place: Point::new(self.number(2)?, -self.number(1)?, 0.0),
+            box_height_px: self.number(3)?,
             row: Row {
-                aspect: self.number(3)?,
+                aspect: self.number(4)?,
                 components: (0..components).map(of).collect::<Result<_, RowError>>()?,
                 facing: facing.collect::<Result<_, RowError>>()?,
             },
@@ -264,7 +288,7 @@ mod tests {
             rows: vec![LabelledRow {
                 row,
                 angle: ObservationAngle::new(1.5),
-                range_m: 20.0,
+                place: Point::new(20.0, -3.0, 0.0),
                 box_height_px: 60.0,
             }],
         }
@@ -278,6 +302,7 @@ mod tests {
         let read = RowTable::read(&file).expect("rows");
         assert_eq!(read.components, table().components);
         assert_eq!(read.rows[0].row, table().rows[0].row);
+        assert_eq!(read.rows[0].place, table().rows[0].place);
         assert!(read.rows[0].angle.apart_rad(table().rows[0].angle) < 1e-9);
     }
 

@@ -1,13 +1,17 @@
 //! Plots of an evaluation, made of the same samples as its figures.
 
 mod bars;
+mod car_rows;
 mod from_above;
+mod position_curve;
 mod rotation;
 mod scatter;
 mod sigmas;
 mod study;
 mod style;
 
+pub(crate) use car_rows::draw_car_rows;
+pub use position_curve::draw_position_curve;
 pub(crate) use rotation::draw_rotation;
 pub use study::draw_study;
 

@@ -12,7 +12,7 @@ const PANEL_PX: (u32, u32) = (640, 640);
 const DOT_PX: i32 = 3;
 const DOT: RGBColor = RGBColor(31, 90, 150);
 const DOT_OPACITY: f64 = 0.45;
-const HALF_TURN_DEG: f64 = 180.0;
+const TURN_DEG: f64 = 360.0;
 
 /// One panel per forest.
 ///
@@ -39,15 +39,16 @@ fn drawn(forests: &[(String, Vec<Answer>)], file: &Path) -> Drawn {
     for (area, (name, answers)) in below.split_evenly((1, columns)).iter().zip(forests) {
         let axes = Axes {
             title: format!("{name}, n {}", answers.len()),
-            x: (-HALF_TURN_DEG..HALF_TURN_DEG, "true, degrees"),
-            y: (-HALF_TURN_DEG..HALF_TURN_DEG, "estimated, degrees"),
+            x: (0.0..TURN_DEG, "true, degrees"),
+            y: (0.0..TURN_DEG, "estimated, degrees"),
         };
         let mut chart = style::meshed(area, &axes)?;
-        let ends = [-HALF_TURN_DEG, HALF_TURN_DEG].map(|deg| (deg, deg));
+        let ends = [0.0, TURN_DEG].map(|deg| (deg, deg));
         chart.draw_series(LineSeries::new(ends, REFERENCE.stroke_width(2)))?;
         let dots = answers
             .iter()
-            .map(|answer| (answer.true_deg, answer.found_deg));
+            .map(|answer| [answer.true_deg, answer.found_deg].map(|deg| deg.rem_euclid(TURN_DEG)))
+            .map(|[truth, found]| (truth, found));
         let colour = DOT.mix(DOT_OPACITY).filled();
         chart.draw_series(dots.map(|at| Circle::new(at, DOT_PX, colour)))?;
     }

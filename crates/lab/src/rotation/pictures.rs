@@ -1,11 +1,14 @@
 //! Labelled pictures as the simulator's `training` command writes them: `labels.jsonl`, a line per picture with a
 //! camera of its own.
 
+use super::rows::LEVEL_M;
 use crate::truth::{TruthObject, objects_of_line};
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use roadwatch_camera::StillImage;
 use roadwatch_core::{
-    Image, ImageSize, Mount,
-    space::{BaseLink, Point},
+    Image, ImageSize,
+    rig::LooksVertical,
+    space::{BaseLink, CameraGround, Optical, Transform},
 };
 use serde::Deserialize;
 use std::{
@@ -39,13 +42,16 @@ pub enum PictureSetError {
         #[source]
         cause: serde_json::Error,
     },
+    /// A camera that looks up or down.
+    #[error(transparent)]
+    Pose(#[from] LooksVertical),
 }
 
 /// One labelled picture.
 pub(super) struct Picture {
     pub(super) image: Image,
-    /// Where its camera is.
-    pub(super) eye: Point<BaseLink>,
+    /// The ground before its camera.
+    pub(super) ground: Transform<BaseLink, CameraGround>,
     pub(super) objects: Vec<TruthObject>,
 }
 
@@ -55,6 +61,7 @@ struct Line {
     width: u32,
     height: u32,
     position_m: [f64; 3],
+    orientation_wxyz: [f64; 4],
     objects: serde_json::Value,
 }
 
@@ -84,11 +91,22 @@ pub(super) fn read(
             width_px: line.width,
             height_px: line.height,
         };
+        let ground = ground_of(line.position_m, line.orientation_wxyz)?;
         let still = StillImage::new(bytes, size, file.display().to_string());
         Ok(Picture {
             image: Image::encoded(Box::new(still)),
-            eye: Mount::ahead(line.position_m).base_from_optical().origin(),
+            ground,
             objects,
         })
     }))
+}
+
+/// The ground before a camera at that pose; a quaternion of another length is one of the same direction.
+fn ground_of(
+    position_m: [f64; 3],
+    [w, x, y, z]: [f64; 4],
+) -> Result<Transform<BaseLink, CameraGround>, LooksVertical> {
+    let turned = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
+    let pose = Isometry3::from_parts(Translation3::from(position_m), turned);
+    Transform::<BaseLink, Optical>::new(pose).to_ground(LEVEL_M)
 }

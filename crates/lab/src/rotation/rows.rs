@@ -5,10 +5,14 @@ use crate::truth::{Truth, TruthError, TruthObject};
 use roadwatch_camera::{DatasetError, Recording as _, RigDataset};
 use roadwatch_core::{
     BoxPx, Image, SourceError, error_chain,
-    space::{BaseLink, Point},
+    rig::LooksVertical,
+    space::{BaseLink, CameraGround, Transform},
 };
 use roadwatch_rotate::{LabelledRow, RayAngle, RowTable, Yaw, estimator::RowReader};
 use std::{collections::HashMap, path::Path};
+
+/// Places are told on the plane, so any height of it will do.
+pub(super) const LEVEL_M: f64 = 0.0;
 
 /// Which labelled objects become rows, and how far off their boxes are.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,6 +60,9 @@ pub enum RowSourceError {
     /// Its images.
     #[error("an image cannot be read: {}", error_chain(.0))]
     Source(#[from] SourceError),
+    /// A camera's pose.
+    #[error(transparent)]
+    Pose(#[from] LooksVertical),
     /// An image that cannot be decoded, or a network that failed.
     #[error("{0}")]
     Failed(String),
@@ -100,7 +107,7 @@ impl<'a> RowsFrom<'a> {
             let total = pictures.len() as u64;
             for (picture, done) in pictures.zip(1..) {
                 let picture = picture?;
-                self.image(&picture.image, picture.eye, &picture.objects)?;
+                self.image(&picture.image, picture.ground, &picture.objects)?;
                 progress(done, total);
             }
             return Ok(());
@@ -118,11 +125,12 @@ impl<'a> RowsFrom<'a> {
                 continue;
             };
             let mut recording = recording?;
+            let ground = camera.base_from_ground(LEVEL_M)?;
             while let Some(stamp) = recording.next_stamp()? {
                 let image = recording.take_image()?;
                 if let Some(&number) = numbers.get(&stamp) {
                     let objects = truth.objects(number, camera.name.as_str());
-                    self.image(&image, camera.base_from_optical.origin(), objects)?;
+                    self.image(&image, ground, objects)?;
                 }
                 done += 1;
                 progress(done, total);
@@ -140,7 +148,7 @@ impl<'a> RowsFrom<'a> {
     fn image(
         &mut self,
         image: &Image,
-        eye: Point<BaseLink>,
+        ground: Transform<BaseLink, CameraGround>,
         objects: &[TruthObject],
     ) -> Result<(), RowSourceError> {
         let usable: Vec<(&TruthObject, Yaw, BoxPx)> = objects
@@ -162,11 +170,11 @@ impl<'a> RowsFrom<'a> {
         let found = self.reader.read(pixels, &boxes).map_err(failed)?;
         for ((object, yaw, exact), seen) in usable.into_iter().zip(found) {
             let Some(seen) = seen else { continue };
-            let away = object.center.coords - eye.coords;
+            let away = object.center.coords - ground.origin().coords;
             self.table.rows.push(LabelledRow {
                 row: seen.row,
                 angle: yaw.seen_along(RayAngle::towards(away.x, away.y)),
-                range_m: away.xy().norm(),
+                place: ground.inverse() * object.center,
                 box_height_px: exact.height_px().into(),
             });
         }

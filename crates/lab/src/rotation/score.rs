@@ -1,10 +1,11 @@
 //! How far a forest's angles are off: in all, and by what makes them hard.
 
+use super::car_row::{self, CALIBRATIONS, CarRow, car_rows};
 use crate::{
     plots::{self, PlotError},
     score::{mean, quantile, share},
 };
-use roadwatch_rotate::{Forest, LabelledRow, RowTable};
+use roadwatch_rotate::{Forest, LabelledRow, PositionCurve, RowTable};
 use serde::Serialize;
 use serde_json::json;
 use std::{collections::BTreeMap, fs, io, path::Path};
@@ -46,6 +47,8 @@ pub(crate) struct Answer {
 pub struct RotationReport {
     forests: Vec<(String, Vec<Answer>)>,
     rows: Vec<Groups>,
+    /// By forest, where cars in a row were looked at.
+    car_rows: Vec<(String, Vec<CarRow>)>,
 }
 
 /// What a row belongs to.
@@ -88,10 +91,23 @@ impl RotationReport {
                 .map(|(name, forest)| (name.clone(), answers(forest)))
                 .collect(),
             rows: table.rows.iter().map(Groups::of).collect(),
+            car_rows: Vec::new(),
         }
     }
 
-    /// `forests.<name>.{all,by.<grouping>.<group>}`.
+    /// With cars in a row, before and after each calibration.
+    #[must_use]
+    pub fn with_car_rows(
+        mut self,
+        (table, curve): (&RowTable, &PositionCurve),
+        forests: &[(String, Forest)],
+    ) -> Self {
+        let of = |(name, forest): &(String, Forest)| (name.clone(), car_rows(table, forest, curve));
+        self.car_rows = forests.iter().map(of).collect();
+        self
+    }
+
+    /// `forests.<name>.{all,by.<grouping>.<group>}`, and `car_rows.<name>` where cars in a row were looked at.
     #[must_use]
     pub fn to_json(&self) -> serde_json::Value {
         let of = |(name, answers): &(String, Vec<Answer>)| {
@@ -101,7 +117,13 @@ impl RotationReport {
             });
             (name.clone(), scores)
         };
-        json!({ "forests": self.forests.iter().map(of).collect::<serde_json::Map<_, _>>() })
+        let car_rows = self.car_rows.iter();
+        let car_rows = car_rows.map(|(name, rows)| (name.clone(), json!(rows)));
+        json!({
+            "forests": self.forests.iter().map(of).collect::<serde_json::Map<_, _>>(),
+            "calibrations": CALIBRATIONS,
+            "car_rows": car_rows.collect::<serde_json::Map<_, _>>(),
+        })
     }
 
     /// The same as tables.
@@ -119,10 +141,15 @@ impl RotationReport {
                 }
             }
         }
+        for (name, rows) in &self.car_rows {
+            text += &format!("\n## Cars in a row, {name}\n");
+            text += &car_row::to_markdown(rows);
+        }
         text
     }
 
-    /// Writes `rotation.json`, `rotation.md` and `rotation.png` into a folder, which is made.
+    /// Writes `rotation.json`, `rotation.md`, `rotation.png` and, with cars in a row, `car_rows.png` into a folder,
+    /// which is made.
     ///
     /// # Errors
     /// When the disk does not take them.
@@ -134,6 +161,9 @@ impl RotationReport {
         )?;
         fs::write(folder.join("rotation.md"), self.to_markdown())?;
         plots::draw_rotation(&self.forests, &folder.join("rotation.png"))?;
+        if let Some((_, rows)) = self.car_rows.first() {
+            plots::draw_car_rows(rows, &folder.join("car_rows.png"))?;
+        }
         Ok(())
     }
 
@@ -182,7 +212,7 @@ impl Groups {
         let found = found.filter(|(column, _)| column.is_some()).count();
         Self([
             ("angle", band(turned, ANGLE_BAND_DEG, "deg")),
-            ("distance", band(labelled.range_m, RANGE_BAND_M, "m")),
+            ("distance", band(labelled.range_m(), RANGE_BAND_M, "m")),
             ("box height", format!("{height:03.0} px and more")),
             ("components found", format!("{found:02}")),
         ])

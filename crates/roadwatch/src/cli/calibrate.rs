@@ -2,6 +2,7 @@
 
 use clap::{ArgGroup, Args, Subcommand, ValueEnum};
 use roadwatch_calibrate::KnownObject;
+use roadwatch_rotate::position_curve::MEAN_LOC_Y_M;
 use std::path::PathBuf;
 
 /// What to calibrate. Nothing here changes a file of yours: what was found is printed as keys to paste.
@@ -13,6 +14,8 @@ pub enum CalibrateCommand {
     Camera(Box<CalibrateCameraArgs>),
     /// Find how a camera is mounted: from points on the ground, from lines on the road, or from a drive.
     Mount(Box<CalibrateMountArgs>),
+    /// Fit the paper's curve of rotation bias against LocX, from rows of cars at one distance (Fig. 13.2).
+    Rotation(CalibrateRotationArgs),
 }
 
 /// Arguments of `calibrate focal`.
@@ -222,6 +225,37 @@ pub struct CalibrateMountArgs {
     #[arg(long, value_name = "FILE")]
     pub image: Option<PathBuf>,
     /// Draw horizon and ground before and after. With several cameras their names are added.
+    #[arg(long, value_name = "FILE")]
+    pub picture: Option<PathBuf>,
+    /// Print the result as JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `calibrate rotation`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "What a crop shows is the angle to the viewing ray, so cars that point the same way look different. \
+    The daemon adds the exact ray where the camera's pose is known, which it always is; the curve is the paper's way:\n  \
+    roadwatch calibrate rotation rows.csv --forest models/roadwatch_rotation.forest -o curve.json --picture curve.png\n\n\
+    Rows come from `roadwatch rotation rows`. position_curve = \"curve.json\" in [rotation] puts it in force."
+)]
+pub struct CalibrateRotationArgs {
+    /// Rows (CSV of `rotation rows`).
+    pub rows: PathBuf,
+    /// The forest whose bias is found.
+    #[arg(long, value_name = "FILE")]
+    pub forest: PathBuf,
+    /// Distance ahead whose curve stands for all, metres.
+    #[arg(long, value_name = "M", default_value_t = MEAN_LOC_Y_M, value_parser = side)]
+    pub loc_y_m: f64,
+    /// Take rows this much nearer and farther, metres.
+    #[arg(long, value_name = "M", default_value_t = 5.0, value_parser = side)]
+    pub within_m: f64,
+    /// The curve's file (JSON).
+    #[arg(short, long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Draw rows and curve.
     #[arg(long, value_name = "FILE")]
     pub picture: Option<PathBuf>,
     /// Print the result as JSON.

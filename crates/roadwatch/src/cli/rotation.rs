@@ -84,13 +84,23 @@ pub struct RotationTrainArgs {
 
 /// Arguments of `rotation evaluate`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    roadwatch rotation evaluate unseen.csv ours.forest paper.forest --report out\n  \
+    roadwatch rotation evaluate turntable.csv ours.forest --car-row row.csv --curve curve.json --report out")]
 pub struct RotationEvaluateArgs {
     /// Rows that no forest was grown on (CSV of `rotation rows`).
     pub rows: PathBuf,
     /// Forests, side by side.
     #[arg(required = true, value_name = "FOREST")]
     pub forests: Vec<PathBuf>,
-    /// Folder for rotation.json, rotation.md and rotation.png.
+    /// Rows of cars that stand side by side and point the same way (scenario `car_row`), before and after each
+    /// calibration; with --curve.
+    #[arg(long, value_name = "FILE", requires = "curve")]
+    pub car_row: Option<PathBuf>,
+    /// The paper's position curve (`calibrate rotation`).
+    #[arg(long, value_name = "FILE", requires = "car_row")]
+    pub curve: Option<PathBuf>,
+    /// Folder for rotation.json, rotation.md, rotation.png and car_rows.png.
     #[arg(long, value_name = "DIR")]
     pub report: PathBuf,
     /// Print the JSON instead of the tables.

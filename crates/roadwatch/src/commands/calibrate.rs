@@ -7,6 +7,7 @@ mod drive_boxes;
 pub mod focal;
 pub mod mount;
 mod mount_report;
+pub mod rotation;
 mod still;
 
 use crate::{cli::CalibrateCommand, failure::Failure};
@@ -20,5 +21,6 @@ pub fn run(command: &CalibrateCommand) -> Result<(), Failure> {
         CalibrateCommand::Focal(args) => focal::run(args),
         CalibrateCommand::Camera(args) => camera::run(args),
         CalibrateCommand::Mount(args) => mount::run(args),
+        CalibrateCommand::Rotation(args) => rotation::run(args),
     }
 }

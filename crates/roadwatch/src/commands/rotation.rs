@@ -10,7 +10,7 @@ use anyhow::Context as _;
 use roadwatch_lab::{RotationReport, RowFilter, RowsFrom};
 use roadwatch_onnx::{Runtime, SessionOptions};
 use roadwatch_rotate::{
-    ComponentNetwork, Forest, ForestOptions, Recipe, RowTable, estimator::RowReader,
+    ComponentNetwork, Forest, ForestOptions, PositionCurve, Recipe, RowTable, estimator::RowReader,
 };
 use std::{num::NonZero, path::Path, thread::available_parallelism};
 
@@ -96,17 +96,21 @@ fn evaluate(args: &RotationEvaluateArgs) -> Result<(), Failure> {
     let table = read_rows(&args.rows)?;
     let mut forests = Vec::with_capacity(args.forests.len());
     for file in &args.forests {
-        let forest = Forest::read(file).context("nothing was evaluated")?;
-        if forest.components() != table.components || forest.facing_bins() != table.facing_bins {
-            let what = format!("`{}` was grown on rows of another model", file.display());
-            return Err(anyhow::anyhow!(what).into());
-        }
+        let forest = read_forest(file, &table)?;
         let name = file
             .file_stem()
             .map(|stem| stem.to_string_lossy().into_owned());
         forests.push((name.unwrap_or_default(), forest));
     }
-    let report = RotationReport::new(&table, &forests);
+    let mut report = RotationReport::new(&table, &forests);
+    if let (Some(rows), Some(curve)) = (&args.car_row, &args.curve) {
+        let rows = read_rows(rows)?;
+        for ((_, forest), file) in forests.iter().zip(&args.forests) {
+            check_model(file, forest, &rows)?;
+        }
+        let curve = PositionCurve::read(curve).map_err(anyhow::Error::from)?;
+        report = report.with_car_rows((&rows, &curve), &forests);
+    }
     report
         .write(&args.report)
         .context("the report is not kept")?;
@@ -117,6 +121,24 @@ fn evaluate(args: &RotationEvaluateArgs) -> Result<(), Failure> {
     }
     eprintln!("written to {}", args.report.display());
     Ok(())
+}
+
+/// A forest that was grown on the components of these rows.
+///
+/// # Errors
+/// When it cannot be read, or was grown on rows of another model.
+pub(super) fn read_forest(file: &Path, table: &RowTable) -> Result<Forest, Failure> {
+    let forest = Forest::read(file).context("nothing was evaluated")?;
+    check_model(file, &forest, table)?;
+    Ok(forest)
+}
+
+fn check_model(file: &Path, forest: &Forest, table: &RowTable) -> Result<(), Failure> {
+    if forest.components() == table.components && forest.facing_bins() == table.facing_bins {
+        return Ok(());
+    }
+    let what = format!("`{}` was grown on rows of another model", file.display());
+    Err(anyhow::anyhow!(what).into())
 }
 
 fn read_rows(file: &Path) -> Result<RowTable, Failure> {

@@ -21,6 +21,8 @@ pub struct RotationConfig {
     pub features: Option<PathBuf>,
     /// The forest.
     pub forest: PathBuf,
+    /// The paper's curve in place of the exact ray.
+    pub position_curve: Option<PathBuf>,
     /// Most objects of a frame that are looked at.
     pub crops_per_frame: usize,
     /// Threads inside one run.
@@ -41,12 +43,14 @@ pub(super) fn read(rotation: &Reader<'_, '_>) -> Option<RotationConfig> {
     let classes = rotation.texts("classes");
     let classes = classes.unwrap_or_else(|| DEFAULT_CLASSES.map(str::to_owned).to_vec());
     let features = rotation.path("features");
+    let position_curve = rotation.path("position_curve");
     let crops = rotation.integer("crops_per_frame", 1..=255);
     let height = rotation.number("min_height_px", 1.0..=10_000.0);
     let threads = rotation.integer("threads", 1..=256);
     Some(RotationConfig {
         model: model?,
         features,
+        position_curve,
         forest: forest?,
         crops_per_frame: crops.unwrap_or(DEFAULT_CROPS_PER_FRAME) as usize,
         threads: threads.unwrap_or(1) as usize,

@@ -196,6 +196,7 @@ mod tests {
         forest::ForestOptions,
         row::{LabelledRow, Row, RowTable},
     };
+    use roadwatch_core::space::Point;
     use std::f64::consts::TAU;
 
     /// Components that go round with the angle, as those of a turntable do.
@@ -215,7 +216,7 @@ mod tests {
                     facing: Vec::new(),
                 },
                 angle: ObservationAngle::new(angle),
-                range_m: 10.0,
+                place: Point::new(10.0, 0.0, 0.0),
                 box_height_px: 80.0,
             }
         };

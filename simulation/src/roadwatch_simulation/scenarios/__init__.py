@@ -33,6 +33,7 @@ SCENARIOS: dict[str, Scenario] = {
     "grid": Scenario("one car stands in every cell of a grid once", len(paper.grid_cells()), paper.grid),
     "long_path": Scenario("one car drives away from a full-HD camera, 6 to 60 m", 55, study.long_path),
     "vehicles": Scenario("every kind of vehicle, anywhere, at any heading", 60, study.vehicles),
+    "car_row": Scenario("three cars side by side, 15, 30 and 45 m ahead in turns", 30, study.car_row),
     "traffic": Scenario("six cameras on a car in moving traffic", 120, traffic),
     "training": Scenario("one random picture for training a detector", 1, _one_picture),
 }

@@ -18,6 +18,9 @@ NEAREST_M = 7.0
 FARTHEST_M = 60.0
 LONG_NEAREST_M = 14.0
 """Nearer, a bus or a lorry does not fit into the picture."""
+ROWS_M = (15.0, 30.0, 45.0)
+"""The paper calibrates at 30 m; nearer and farther show what that does elsewhere."""
+ROW_ASIDE_M = (8.0, 0.0, -8.0)
 EDGE_RAD = 0.03
 """Kept free at both edges of the picture, and between two vehicles as seen from the camera."""
 ATTEMPTS = 60
@@ -30,6 +33,22 @@ def long_path(seed: int, frames: int) -> Scene:
     """A car drives away along the optical axis, from 6 to 60 m."""
     near, far = LONG_PATH_M
     return paper.one_car(seed, frames, paper.evenly((near, 0.0), (far, 0.0), frames))
+
+
+def car_row(seed: int, frames: int) -> Scene:
+    """Three cars side by side that face away, in a row 15, 30 and 45 m ahead in turns; then three others."""
+    cars = []
+    for trio in range(math.ceil(frames / len(ROWS_M))):
+        for place, aside in enumerate(ROW_ASIDE_M):
+            number = trio * len(ROW_ASIDE_M) + place
+            waypoints = []
+            for frame in range(frames):
+                shown = frame // len(ROWS_M) == trio
+                x, y = (ROWS_M[frame % len(ROWS_M)], aside) if shown else (AWAY_M, number * AWAY_STEP_M)
+                waypoints.append(Waypoint(frame / paper.RATE_HZ, x, y, 0.0))
+            kind = paper.PATH_KINDS[(number + trio) % len(paper.PATH_KINDS)]
+            cars.append(SceneObject(f"car {number}", kind, seed * 1000 + number, Path(tuple(waypoints))))
+    return _on_the_plain(seed, frames, tuple(cars))
 
 
 def vehicles(seed: int, frames: int) -> Scene:
@@ -45,6 +64,11 @@ def vehicles(seed: int, frames: int) -> Scene:
             poses.append(Waypoint(frame / paper.RATE_HZ, x, y, yaw))
     objects = tuple(SceneObject(thing.name, thing.kind, thing.seed, Path(tuple(poses)))
                     for thing, poses in zip(fleet, waypoints, strict=True))  # fmt: skip
+    return _on_the_plain(seed, frames, objects)
+
+
+def _on_the_plain(seed: int, frames: int, objects: tuple[SceneObject, ...]) -> Scene:
+    """The full-HD camera over these objects."""
     return Scene(
         frames=frames, rate_hz=paper.RATE_HZ, cameras=(paper.camera(),), objects=objects, seed=seed,
         environment=Environment("plain", seed, "sun" if seed % 2 == 0 else "overcast", 150.0, 40.0),
