@@ -42,6 +42,7 @@ pub struct LeftToRight {
 #[derive(Clone, Debug)]
 struct Remembered {
     class: ObjectClass,
+    box_px: BoxPx,
     /// Measured, never held.
     location: Option<Measured>,
     /// As it was found, and when.
@@ -121,6 +122,7 @@ impl LeftToRight {
         };
         Remembered {
             class: class.clone(),
+            box_px: seen.located.detection.box_px,
             location: measured,
             heading: match seen.heading {
                 Some(KeptHeading { heading, age }) if age.is_zero() => Some((heading, at)),
@@ -143,19 +145,21 @@ impl Reidentifier for LeftToRight {
         } = seen.frame;
         let order = places(seen.items.iter().map(|detection| &detection.box_px));
         let ground = self.ground.at(captured_at);
-        let prior = |class: &ObjectClass, place: usize| {
-            let before = self.remembered(camera, place, class)?;
+        let prior = |detection: &Detection, place: usize| {
+            let before = self.remembered(camera, place, &detection.class)?;
             let measured = before.location.as_ref()?;
+            // From frame to frame an object's boxes overlap; where they do not, the row has moved on.
+            let is_there = before.box_px.iou(&detection.box_px) > 0.0;
+            let heading = before.heading.filter(|_| is_there);
             Some(Prior {
                 location: measured.location.clone(),
-                heading: before
-                    .heading
+                heading: heading
                     .map(|(heading, at)| kept(heading, captured_at.saturating_since(at))),
                 age: captured_at.saturating_since(measured.at),
             })
         };
         let known = |(detection, place): (&Detection, usize)| Known {
-            object: prior(&detection.class, place),
+            object: prior(detection, place),
             slopes: ground.without((camera, identity(camera, place))),
         };
         seen.items.iter().zip(order).map(known).collect()

@@ -5,15 +5,20 @@ use crate::{
     forest::Turned,
     row::Row,
 };
-use roadwatch_core::{Heading, HeadingCandidate, HeadingCandidates, Location};
+use arrayvec::ArrayVec;
+use roadwatch_core::{Heading, HeadingCandidate, Location, location::MAX_HEADING_CANDIDATES};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
+/// None of the headings that a place allows is right this often: another size than expected, a hidden end.
+const PLACE_FAILS: f64 = 0.1;
 /// A forest is wrong altogether this often: components of another car, a kind of vehicle it never saw.
 const FOREST_FAILS: f64 = 0.1;
 /// So is what the model sees at once.
 const FACING_FAILS: f64 = 0.1;
 /// The heading an object had is another object's, or from before a turn.
 const PRIOR_FAILS: f64 = 0.2;
+/// Those of a place, the forest's, and its opposite.
+const MOST_CANDIDATES: usize = MAX_HEADING_CANDIDATES + 2;
 /// The forest sharpens a heading that it agrees with to this, radians: beyond, it means another one.
 const AGREES_WITHIN_RAD: f64 = 0.5;
 /// No forest is better than this on photographs, radians: it was grown on simulated ones.
@@ -21,9 +26,10 @@ const LEAST_FOREST_STD_RAD: f64 = 0.1;
 
 /// The likeliest heading of an object, its deviation, and how likely it is to be turned round.
 ///
-/// Candidates are the headings that the object's place allows ([`Location::headings`]), or what the forest says where
-/// it allows any. Each weighs as much as its place, the forest, the model's direct look and the heading that the
-/// object had agree with it; each of these may fail.
+/// Candidates are the headings that the object's place allows ([`Location::headings`]), each sharpened by the forest
+/// where both mean the same, and what the forest says by itself, should the place's all be wrong. Each weighs as much
+/// as its place, the forest, the model's direct look and the heading that the object had agree with it; each of these
+/// may fail.
 #[must_use]
 pub fn decide(
     location: &Location,
@@ -31,64 +37,64 @@ pub fn decide(
     (row, turned): (&Row, &Turned),
     before: Option<&Heading>,
 ) -> Heading {
-    let seen = turned.angle.seen_along(ray);
     let forest = Heading {
-        yaw_rad: seen.radians(),
+        yaw_rad: turned.angle.seen_along(ray).radians(),
         std_dev_rad: turned.std_dev_rad.max(LEAST_FOREST_STD_RAD),
         flip_probability: turned.flip_share,
     };
-    let candidates = if location.headings.is_empty() {
-        both_ways(&forest)
-    } else {
-        location.headings.clone()
+    let mut candidates: ArrayVec<_, MOST_CANDIDATES> = of_place(location, &forest);
+    candidates.extend(of_forest(&forest, location.headings.is_empty()));
+    let weigh = |(candidate, weight): &(Heading, f64)| {
+        let by_look = (1.0 - FACING_FAILS) * facing(row, candidate, ray) + FACING_FAILS;
+        let by_memory = before.map_or(1.0, |before| likelihood(before, candidate, PRIOR_FAILS));
+        weight * by_look * by_memory
     };
-    let weigh = |candidate: &HeadingCandidate| {
-        let heading = &candidate.heading;
-        let by_forest = likelihood(&forest, heading, FOREST_FAILS);
-        let by_look = (1.0 - FACING_FAILS) * facing(row, heading, ray) + FACING_FAILS;
-        let by_memory = before.map_or(1.0, |before| likelihood(before, heading, PRIOR_FAILS));
-        candidate.weight * by_forest * by_look * by_memory
-    };
-    let weights: Vec<f64> = candidates.iter().map(weigh).collect();
+    let weights: ArrayVec<f64, MOST_CANDIDATES> = candidates.iter().map(weigh).collect();
     let sum: f64 = weights.iter().sum();
     let best = (0..weights.len()).max_by(|&a, &b| weights[a].total_cmp(&weights[b]));
     let Some(best) = best.filter(|_| sum > 0.0) else {
         return forest;
     };
-    let chosen = &candidates[best].heading;
+    let (chosen, _) = candidates[best];
     let (mut flipped, mut spread) = (0.0, 0.0);
-    for (candidate, weight) in candidates.iter().zip(&weights) {
-        let apart = wrapped(candidate.heading.yaw_rad - chosen.yaw_rad);
+    for ((candidate, _), weight) in candidates.iter().zip(&weights) {
+        let apart = wrapped(candidate.yaw_rad - chosen.yaw_rad);
         if apart.abs() > FRAC_PI_2 {
             flipped += weight / sum;
         } else {
             spread += weight / sum * apart * apart;
         }
     }
-    let sharpened = sharpened(chosen, &forest);
+    let spread_rad = (spread / (1.0 - flipped)).sqrt();
     Heading {
-        std_dev_rad: sharpened
-            .std_dev_rad
-            .hypot((spread / (1.0 - flipped)).sqrt()),
+        std_dev_rad: chosen.std_dev_rad.hypot(spread_rad),
         flip_probability: flipped,
-        ..sharpened
+        ..chosen
     }
 }
 
-/// A heading and its opposite, by the probability of that.
-fn both_ways(heading: &Heading) -> HeadingCandidates {
-    let way = |turn: f64, weight: f64| HeadingCandidate {
-        heading: Heading {
-            yaw_rad: wrapped(heading.yaw_rad + turn),
-            flip_probability: 0.0,
-            ..*heading
-        },
-        weight,
+/// The headings that a place allows, weighed by the forest and sharpened by it.
+fn of_place(location: &Location, forest: &Heading) -> ArrayVec<(Heading, f64), MOST_CANDIDATES> {
+    let weigh = |HeadingCandidate { heading, weight }: &HeadingCandidate| {
+        let by_forest = likelihood(forest, heading, FOREST_FAILS);
+        let weight = (1.0 - PLACE_FAILS) * weight * by_forest;
+        (sharpened(heading, forest), weight)
     };
-    let flipped = heading.flip_probability;
-    [way(0.0, 1.0 - flipped), way(PI, flipped)]
-        .into_iter()
-        .collect()
+    location.headings.iter().map(weigh).collect()
+}
+
+/// What the forest says by itself, and its opposite, by the chance of that; `alone` where a place allows anything.
+fn of_forest(forest: &Heading, alone: bool) -> [(Heading, f64); 2] {
+    let share = if alone { 1.0 } else { PLACE_FAILS };
+    let flipped = forest.flip_probability;
+    [(0.0, 1.0 - flipped), (PI, flipped)].map(|(turn, probability)| {
+        let heading = Heading {
+            yaw_rad: wrapped(forest.yaw_rad + turn),
+            flip_probability: 0.0,
+            ..*forest
+        };
+        (heading, share * (1.0 - FOREST_FAILS) * probability)
+    })
 }
 
 /// How likely `said` makes a heading, relative to all being alike; a share `fails` of its answers means nothing.
