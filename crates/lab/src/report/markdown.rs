@@ -4,6 +4,7 @@ use super::Report;
 use crate::{
     bootstrap::Interval,
     grouping::Grouping,
+    heading_score::HeadingScore,
     plots::Plot,
     sample::Estimator,
     sample_table::Group,
@@ -178,15 +179,9 @@ impl Report {
             .into_iter()
             .map(|(who, figures)| (who.to_string(), &figures.heading));
         for (who, h) in decided.into_iter().chain(said) {
-            let cells = [
-                who,
-                h.n.to_string(),
-                degrees(h.mean_abs_deg),
-                degrees(h.median_abs_deg),
-                percent(h.flip_share),
-                degrees(h.folded_median_deg),
-            ];
-            text.push_str(&row(cells));
+            let folded = degrees(h.folded_median_deg);
+            let cells = std::iter::once(who).chain(heading_cells(h));
+            text.push_str(&row(cells.chain([folded])));
         }
         text
     }
@@ -231,8 +226,33 @@ impl Report {
                     .chain(cells)));
             }
         }
-        text
+        text + &headings_of_groups(groups)
     }
+}
+
+/// Headings that were decided for, by group; nothing where there were none.
+fn headings_of_groups(groups: &[Group]) -> String {
+    let decided = groups.iter().filter_map(|group| {
+        let heading = &group.figures.get(&Estimator::Published)?.decided_heading;
+        (heading.n > 0)
+            .then(|| row(std::iter::once(group.name.clone()).chain(heading_cells(heading))))
+    });
+    let rows: String = decided.collect();
+    if rows.is_empty() {
+        return rows;
+    }
+    format!(
+        "\nheadings decided for\n\n| group | n | mean ° | median ° | flipped |\n|---|---|---|---|---|\n{rows}"
+    )
+}
+
+fn heading_cells(heading: &HeadingScore) -> [String; 4] {
+    [
+        heading.n.to_string(),
+        degrees(heading.mean_abs_deg),
+        degrees(heading.median_abs_deg),
+        percent(heading.flip_share),
+    ]
 }
 
 /// The plots, shown.
