@@ -11,16 +11,7 @@ use opencv::{
 };
 use serde_json::Value;
 use std::{fs, path::Path};
-use support::{refusal, root, run_well, stderr, stdout, write};
-
-/// The demo's configuration with its files at hand, changed by `change`.
-fn demo(folder: &Path, change: impl Fn(String) -> String) -> String {
-    let shipped = fs::read_to_string(root().join("config/demo.toml")).expect("shipped");
-    let placed = shipped
-        .replace("\"../models/", &format!("\"{}/models/", root().display()))
-        .replace("\"../demo\"", &format!("\"{}/demo\"", root().display()));
-    write(folder, "demo.toml", &change(placed))
-}
+use support::{demo, refusal, root, run_well, stderr, stdout, write};
 
 #[test]
 fn the_shipped_clips_get_headings_that_are_mostly_right() {

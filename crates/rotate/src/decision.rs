@@ -51,25 +51,46 @@ pub fn decide(
     };
     let weights: ArrayVec<f64, MOST_CANDIDATES> = candidates.iter().map(weigh).collect();
     let sum: f64 = weights.iter().sum();
-    let best = (0..weights.len()).max_by(|&a, &b| weights[a].total_cmp(&weights[b]));
+    let side = |at: usize| Side::of(&candidates, &weights, &candidates[at].0);
+    // The likeliest heading among those that more is for than against.
+    let best = (0..weights.len()).max_by(|&a, &b| {
+        let believed = |at: usize| (side(at).mass / sum).min(0.5);
+        let by_side = believed(a).total_cmp(&believed(b));
+        by_side.then(weights[a].total_cmp(&weights[b]))
+    });
     let Some(best) = best.filter(|_| sum > 0.0) else {
         return forest;
     };
-    let (chosen, _) = candidates[best];
-    let (mut flipped, mut spread) = (0.0, 0.0);
-    for ((candidate, _), weight) in candidates.iter().zip(&weights) {
-        let apart = wrapped(candidate.yaw_rad - chosen.yaw_rad);
-        if apart.abs() > FRAC_PI_2 {
-            flipped += weight / sum;
-        } else {
-            spread += weight / sum * apart * apart;
-        }
-    }
-    let spread_rad = (spread / (1.0 - flipped)).sqrt();
+    let (chosen, Side { mass, spread }) = (candidates[best].0, side(best));
     Heading {
-        std_dev_rad: chosen.std_dev_rad.hypot(spread_rad),
-        flip_probability: flipped,
+        std_dev_rad: chosen.std_dev_rad.hypot((spread / mass).sqrt()),
+        flip_probability: (1.0 - mass / sum).clamp(0.0, 0.5),
         ..chosen
+    }
+}
+
+/// What points the same way as a heading, to a quarter turn.
+struct Side {
+    /// Sum of weights.
+    mass: f64,
+    /// Sum of weighted squared angles between, square radians.
+    spread: f64,
+}
+
+impl Side {
+    fn of(candidates: &[(Heading, f64)], weights: &[f64], heading: &Heading) -> Self {
+        let mut side = Self {
+            mass: 0.0,
+            spread: 0.0,
+        };
+        for ((candidate, _), weight) in candidates.iter().zip(weights) {
+            let apart = wrapped(candidate.yaw_rad - heading.yaw_rad);
+            if apart.abs() <= FRAC_PI_2 {
+                side.mass += weight;
+                side.spread += weight * apart * apart;
+            }
+        }
+        side
     }
 }
 
@@ -211,6 +232,18 @@ mod tests {
             None,
         );
         assert!((back.yaw_rad.to_degrees() + 10.0).abs() < 3.0);
+    }
+
+    #[test]
+    fn a_sure_forest_stands_against_a_place_whose_headings_are_all_wrong() {
+        let ray = RayAngle::towards(1.0, 0.0);
+        let sure = (&looks(2), &turned(90.0, 0.05));
+        let found = decide(&location(&FOUR), ray, sure, None);
+        assert!(
+            (found.yaw_rad.to_degrees() - 90.0).abs() < 1e-6,
+            "{found:?}"
+        );
+        assert!((0.0..=0.5).contains(&found.flip_probability));
     }
 
     #[test]

@@ -256,6 +256,22 @@ fn a_kept_heading_stays_with_its_object_and_not_with_its_place_in_the_row() {
 }
 
 #[test]
+fn a_heading_is_recalled_only_where_the_object_was() {
+    let mut reid = left_to_right();
+    let first = PerFrame {
+        frame: frame(0, 0),
+        items: vec![car_with_heading(20.0, Duration::ZERO)],
+    };
+    reid.commit(first, &[]);
+    let recalled = |left_px: f32| {
+        let prior = priors(&reid, &seen(0, 100, &cars(&[left_px])))[0].clone();
+        prior.expect("somebody had that place").heading.is_some()
+    };
+    assert!(recalled(104.0));
+    assert!(!recalled(300.0));
+}
+
+#[test]
 fn an_empty_frame_forgets_everybody_and_a_stamp_from_the_past_is_no_age() {
     let mut reid = left_to_right();
     commit(&mut reid, 0, 1_000, &cars(&[100.0]));

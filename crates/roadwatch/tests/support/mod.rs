@@ -161,3 +161,12 @@ pub(crate) fn write(folder: &Path, name: &str, text: &str) -> String {
     std::fs::write(&path, text).expect("written");
     path.display().to_string()
 }
+
+/// The demo's configuration with its files at hand, changed by `change`.
+pub(crate) fn demo(folder: &Path, change: impl Fn(String) -> String) -> String {
+    let shipped = std::fs::read_to_string(root().join("config/demo.toml")).expect("shipped");
+    let placed = shipped
+        .replace("\"../models/", &format!("\"{}/models/", root().display()))
+        .replace("\"../demo\"", &format!("\"{}/demo\"", root().display()));
+    write(folder, "demo.toml", &change(placed))
+}
