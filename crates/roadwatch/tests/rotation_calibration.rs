@@ -58,7 +58,7 @@ fn files(folder: &Path) -> [String; 3] {
         .write(Path::new(&rows))
         .expect("written");
     let grown = table(spread.map(|at| anywhere(at + 0.5)));
-    let grown = Forest::grow(&grown, ForestOptions::default(), |_| ()).expect("a forest");
+    let grown = Forest::grow(&grown, ForestOptions::default(), |_, _| ()).expect("a forest");
     grown.write(Path::new(&forest)).expect("written");
     let cars = [-8.0, 0.0, 8.0].map(|loc_x_m| row(loc_x_m, 30.0, 0.0));
     table(cars.into_iter())

@@ -35,6 +35,8 @@ pub struct Forest {
     nodes: Vec<Node>,
     /// Roots of each pair.
     roots: Vec<[u32; 2]>,
+    /// What the trees' spread is multiplied by: single trees stray more than their mean.
+    deviation_scale: f64,
 }
 
 /// What a forest says.
@@ -42,7 +44,8 @@ pub struct Forest {
 pub struct Turned {
     /// The mean over the trees.
     pub angle: ObservationAngle,
-    /// Spread of the trees on the mean's side of the circle, radians.
+    /// Spread of the trees on the mean's side of the circle, radians, scaled so that on rows that a forest was not
+    /// grown on two errors of three are within it.
     pub std_dev_rad: f64,
     /// Share of the trees that point the other way: more than a right angle from the mean.
     pub flip_share: f64,
@@ -99,7 +102,7 @@ impl Forest {
         let trees = self.roots.len() as f64;
         Turned {
             angle: ObservationAngle::new(mean),
-            std_dev_rad: (variance / (trees - flipped).max(1.0)).sqrt(),
+            std_dev_rad: self.deviation_scale * (variance / (trees - flipped).max(1.0)).sqrt(),
             flip_share: flipped / trees,
         }
     }

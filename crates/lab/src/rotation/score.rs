@@ -32,6 +32,8 @@ pub struct RotationScore {
     pub unflipped_mean_abs_deg: Option<f64>,
     /// Share that is turned round: off by more than 135 degrees (docs/method.md, section 5).
     pub flip_share: Option<f64>,
+    /// Share of those not turned round whose error is within the deviation that the forest gave: 68 % of a Gaussian's.
+    pub share_1_sigma: Option<f64>,
 }
 
 /// A row's true and estimated angle, degrees in -180 to 180.
@@ -40,6 +42,7 @@ pub(crate) struct Answer {
     pub(crate) true_deg: f64,
     pub(crate) found_deg: f64,
     pub(crate) off_deg: f64,
+    pub(crate) std_deg: f64,
 }
 
 /// Forests side by side on the same rows.
@@ -56,15 +59,17 @@ pub struct RotationReport {
 struct Groups([(&'static str, String); 4]);
 
 impl RotationScore {
-    fn of<'a>(answers: impl Iterator<Item = &'a Answer>) -> Self {
-        let off: Vec<f64> = answers.map(|answer| answer.off_deg).collect();
+    fn of<'a>(answers: impl Iterator<Item = &'a Answer> + Clone) -> Self {
+        let off: Vec<f64> = answers.clone().map(|answer| answer.off_deg).collect();
         let unflipped: Vec<f64> = off.iter().copied().filter(|&deg| deg <= FLIP_DEG).collect();
+        let within = answers.filter(|answer| answer.off_deg <= answer.std_deg.min(FLIP_DEG));
         Self {
             n: off.len(),
             mean_abs_deg: mean(off.iter().copied()),
             median_abs_deg: quantile(off.iter().copied(), 0.5),
             unflipped_mean_abs_deg: mean(unflipped.iter().copied()),
             flip_share: share(off.len() - unflipped.len(), off.len()),
+            share_1_sigma: share(within.count(), unflipped.len()),
         }
     }
 }
@@ -76,11 +81,13 @@ impl RotationReport {
         let answers = |forest: &Forest| {
             let mut features = Vec::new();
             let answer = |labelled: &LabelledRow| {
-                let found = forest.turn(&labelled.row, &mut features).angle;
+                let turned = forest.turn(&labelled.row, &mut features);
+                let found = turned.angle;
                 Answer {
                     true_deg: labelled.angle.radians().to_degrees(),
                     found_deg: found.radians().to_degrees(),
                     off_deg: found.apart_rad(labelled.angle).to_degrees(),
+                    std_deg: turned.std_dev_rad.to_degrees(),
                 }
             };
             table.rows.iter().map(answer).collect()
@@ -132,7 +139,7 @@ impl RotationReport {
         let mut text =
             "# Rotation\n\nAngles to the viewing ray, from rows of key components.\n".to_owned();
         for (name, answers) in &self.forests {
-            let head = "| rows | n | mean | median | mean without flips | flips |\n|---|---|---|---|---|---|\n";
+            let head = "| rows | n | mean | median | mean without flips | flips | inside 1 sigma |\n|---|---|---|---|---|---|---|\n";
             text += &format!("\n## {name}\n\n{head}");
             text += &line("all", &RotationScore::of(answers.iter()));
             for (grouping, groups) in self.by_group(answers) {
@@ -180,7 +187,7 @@ impl RotationReport {
         }
         let scored = members.into_iter().map(|(grouping, groups)| {
             let score = |(group, answers): (_, Vec<&Answer>)| {
-                (group, RotationScore::of(answers.into_iter()))
+                (group, RotationScore::of(answers.iter().copied()))
             };
             (grouping, groups.into_iter().map(score).collect())
         });
@@ -221,15 +228,16 @@ impl Groups {
 
 fn line(name: &str, score: &RotationScore) -> String {
     let degrees = |value: Option<f64>| value.map_or("".to_owned(), |deg| format!("{deg:.1}°"));
-    let flips = score
-        .flip_share
-        .map_or("".to_owned(), |share| format!("{:.1} %", share * 100.0));
+    let percent =
+        |share: Option<f64>| share.map_or("".to_owned(), |share| format!("{:.1} %", share * 100.0));
     format!(
-        "| {name} | {} | {} | {} | {} | {flips} |\n",
+        "| {name} | {} | {} | {} | {} | {} | {} |\n",
         score.n,
         degrees(score.mean_abs_deg),
         degrees(score.median_abs_deg),
         degrees(score.unflipped_mean_abs_deg),
+        percent(score.flip_share),
+        percent(score.share_1_sigma),
     )
 }
 
@@ -243,10 +251,12 @@ mod tests {
             true_deg: 0.0,
             found_deg: off_deg,
             off_deg,
+            std_deg: 3.0,
         };
         let score = RotationScore::of([answer(2.0), answer(4.0), answer(178.0)].iter());
         assert_eq!((score.n, score.median_abs_deg), (3, Some(4.0)));
         assert_eq!(score.unflipped_mean_abs_deg, Some(3.0));
+        assert_eq!(score.share_1_sigma, Some(0.5));
         assert!((score.flip_share.expect("a share") - 1.0 / 3.0).abs() < 1e-9);
     }
 }

@@ -78,9 +78,14 @@ fn train(args: &RotationTrainArgs) -> Result<(), Failure> {
         options.trees,
         table.rows.len()
     );
-    let mut progress = Progress::new(options.trees as u64, "trees");
-    let forest = Forest::grow(&table, options, |grown| progress.set(grown as u64));
-    progress.finish();
+    let mut progress = None;
+    let forest = Forest::grow(&table, options, |grown, total| {
+        let bar = progress.get_or_insert_with(|| Progress::new(total as u64, "trees"));
+        bar.set(grown as u64);
+    });
+    if let Some(bar) = progress {
+        bar.finish();
+    }
     let forest = forest.context("no forest")?;
     forest.write(&args.out).context("the forest is not kept")?;
     say!(

@@ -10,7 +10,7 @@ use std::{
 };
 
 const MAGIC: &[u8; 8] = b"RWFOREST";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const NODE_LEN: usize = 10;
 const ROOTS_LEN: usize = 8;
 const DIGEST_LEN: usize = 32;
@@ -22,6 +22,7 @@ struct Header {
     recipe: String,
     components: Vec<String>,
     facing_bins: usize,
+    deviation_scale: f64,
     trees: usize,
     nodes: usize,
 }
@@ -80,6 +81,7 @@ impl Forest {
             recipe: self.recipe.to_string(),
             components: self.components.clone(),
             facing_bins: self.facing_bins,
+            deviation_scale: self.deviation_scale,
             trees: self.roots.len(),
             nodes: self.nodes.len(),
         });
@@ -133,6 +135,7 @@ impl Forest {
             facing_bins: header.facing_bins,
             nodes: Vec::with_capacity(header.nodes),
             roots: Vec::with_capacity(header.trees),
+            deviation_scale: header.deviation_scale,
         };
         for _ in 0..header.trees {
             forest.roots.push([number(&mut rest)?, number(&mut rest)?]);
@@ -170,7 +173,9 @@ impl Forest {
             .iter()
             .flatten()
             .all(|&root| (root as usize) < count);
-        if self.roots.is_empty() || !rooted || !self.nodes.iter().enumerate().all(sound) {
+        let scaled = self.deviation_scale > 0.0 && self.deviation_scale.is_finite();
+        if self.roots.is_empty() || !rooted || !scaled || !self.nodes.iter().enumerate().all(sound)
+        {
             return Err("its trees are malformed");
         }
         Ok(())
@@ -234,7 +239,7 @@ mod tests {
             trees: 10,
             ..ForestOptions::default()
         };
-        Forest::grow(&rows(1500, 1), options, |_| ()).expect("a forest")
+        Forest::grow(&rows(1500, 1), options, |_, _| ()).expect("a forest")
     }
 
     #[test]

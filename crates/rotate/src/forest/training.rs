@@ -10,11 +10,17 @@ use smartcore::{
     ensemble::random_forest_regressor::{RandomForestRegressor, RandomForestRegressorParameters},
     linalg::basic::matrix::DenseMatrix,
 };
+use std::f64::consts::FRAC_PI_2;
 
 /// Trees grown between two words of progress.
 const TREES_AT_A_TIME: usize = 5;
 /// Fewer rows say nothing of a full turn.
 const LEAST_ROWS: usize = 100;
+
+/// To find out how far forests stray, one is grown without every so many-th row, and asked for those.
+const HELD_OUT_EVERY: usize = 5;
+/// Share of a Gaussian's errors within one standard deviation.
+const WITHIN_ONE_SIGMA: f64 = 0.683;
 
 /// How a forest is grown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,24 +87,66 @@ struct GrownNode {
 }
 
 impl Forest {
-    /// Grows a forest. `grown` hears how many pairs of trees there are.
+    /// Grows a forest, and before it another one on four rows of five, which tells how far forests stray on rows that
+    /// they do not know. `grown` hears how many pairs of trees there are, of how many.
     ///
     /// # Errors
     /// See [`TrainingError`].
     pub fn grow(
         table: &RowTable,
         options: ForestOptions,
-        mut grown: impl FnMut(usize),
+        mut grown: impl FnMut(usize, usize),
     ) -> Result<Self, TrainingError> {
         if table.rows.len() < LEAST_ROWS {
             return Err(TrainingError::FewRows(table.rows.len()));
         }
+        let is_held = |at: usize| at % HELD_OUT_EVERY == HELD_OUT_EVERY - 1;
+        let part = |held: bool| {
+            let rows = table.rows.iter().enumerate();
+            let rows = rows.filter(|(at, _)| is_held(*at) == held);
+            RowTable {
+                rows: rows.map(|(_, row)| row.clone()).collect(),
+                ..table.clone()
+            }
+        };
+        let total = 2 * options.trees;
+        let known = Self::grow_on(&part(false), options, |trees| grown(trees, total))?;
+        let deviation_scale = known.scale_on(&part(true));
+        let forest = Self::grow_on(table, options, |trees| {
+            grown(options.trees + trees, total);
+        })?;
+        Ok(Self {
+            deviation_scale,
+            ..forest
+        })
+    }
+
+    /// What this forest's deviations have to be multiplied by for those rows; 1 where it turns all of them round.
+    fn scale_on(&self, unknown: &RowTable) -> f64 {
+        let mut features = Vec::new();
+        let ratio = |labelled: &LabelledRow| {
+            let found = self.turn(&labelled.row, &mut features);
+            let off_rad = found.angle.apart_rad(labelled.angle);
+            (off_rad <= FRAC_PI_2).then(|| off_rad / found.std_dev_rad.max(f64::EPSILON))
+        };
+        let mut ratios: Vec<f64> = unknown.rows.iter().filter_map(ratio).collect();
+        ratios.sort_by(f64::total_cmp);
+        let at = (ratios.len() as f64 * WITHIN_ONE_SIGMA) as usize;
+        ratios.get(at).copied().unwrap_or(1.0).max(f64::EPSILON)
+    }
+
+    fn grow_on(
+        table: &RowTable,
+        options: ForestOptions,
+        mut grown: impl FnMut(usize),
+    ) -> Result<Self, TrainingError> {
         let mut forest = Self {
             recipe: options.recipe,
             components: table.components.clone(),
             facing_bins: table.facing_bins,
             nodes: Vec::new(),
             roots: Vec::new(),
+            deviation_scale: 1.0,
         };
         let features = forest.matrix(table)?;
         let aims = |of: fn(f64) -> f64| {
