@@ -20,13 +20,15 @@ pub use study::{StudyArgs, StudyBoxes};
 pub use table::{TableBuildArgs, TableCommand, TableInspectArgs, TableQueryArgs};
 
 use crate::{commands, failure::Failure};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory as _, Parser, Subcommand, ValueEnum, error::ErrorKind};
+use roadwatch_ros::RosArgs;
 use std::{ffi::OsString, io::IsTerminal as _, path::PathBuf, process::ExitCode};
 use tracing_subscriber::EnvFilter;
 
 /// The middleware warns of what is normal here (no ROS installation) and reports errors on every clean
 /// exit, so it is heard only when asked.
 const DEFAULT_LOG: &str = "warn,ros2_client=error,rustdds=off";
+const QUIET_MIDDLEWARE: &str = "ros2_client=error,rustdds=off";
 
 /// Real-time multi-camera perception: camera images in, poses with 3D boxes out over ROS 2.
 ///
@@ -74,6 +76,36 @@ pub enum Command {
 pub struct ConfigArgs {
     /// The configuration file (TOML).
     pub config: PathBuf,
+    /// ROS 2's own.
+    #[command(flatten)]
+    pub ros: RosArguments,
+}
+
+/// What launch files and `ros2 run` pass on.
+#[derive(Debug, Args)]
+pub struct RosArguments {
+    /// ROS 2's own arguments, up to `--` or the end: -r __node:=NAME, -r __ns:=/NAMESPACE, -r TOPIC:=OTHER,
+    /// --log-level LEVEL.
+    #[arg(
+        long = "ros-args",
+        value_name = "ROS",
+        num_args = 0..,
+        allow_hyphen_values = true,
+        value_terminator = "--"
+    )]
+    tokens: Vec<String>,
+}
+
+impl RosArguments {
+    /// Read; a mistake ends the program as other wrong arguments do.
+    pub fn read(&self) -> RosArgs {
+        RosArgs::parse(&self.tokens).unwrap_or_else(|error| {
+            let what = format!("--ros-args: {error}");
+            Cli::command()
+                .error(ErrorKind::ValueValidation, what)
+                .exit()
+        })
+    }
 }
 
 /// What happens when frames come faster than they are worked off.
@@ -127,6 +159,9 @@ pub struct RunArgs {
     /// Print the final counts and latencies as JSON on standard output.
     #[arg(long)]
     pub json: bool,
+    /// ROS 2's own.
+    #[command(flatten)]
+    pub ros: RosArguments,
 }
 
 fn share(text: &str) -> Result<f64, String> {
@@ -144,7 +179,7 @@ pub fn main_with(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Err(error) => error.exit(),
     };
     tracing_subscriber::fmt()
-        .with_env_filter(EnvFilter::new(&cli.log))
+        .with_env_filter(EnvFilter::new(log_filter(&cli)))
         .with_writer(std::io::stderr)
         .with_ansi(std::io::stderr().is_terminal())
         .with_target(false)
@@ -155,6 +190,19 @@ pub fn main_with(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             eprintln!("{failure}");
             failure.exit_code()
         }
+    }
+}
+
+/// What is logged: ROS's level, where one was given, in the place of the default.
+fn log_filter(cli: &Cli) -> String {
+    let ros = match &cli.command {
+        Command::Run(args) => Some(&args.ros),
+        Command::Check(args) | Command::Graph(args) => Some(&args.ros),
+        _ => None,
+    };
+    match ros.and_then(|ros| ros.read().log_level) {
+        Some(level) => format!("{},{QUIET_MIDDLEWARE}", level.as_str()),
+        None => cli.log.clone(),
     }
 }
 

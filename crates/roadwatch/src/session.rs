@@ -15,6 +15,7 @@ use roadwatch_pipeline::{
     start,
 };
 use roadwatch_reid::LeftToRight;
+use roadwatch_ros::RosArgs;
 use std::{
     sync::Arc,
     time::{Duration, Instant},
@@ -68,6 +69,14 @@ impl Session {
             }),
             _ => unreachable!("what could not be opened was noted"),
         }
+    }
+
+    /// Under the names that somebody asked for behind `--ros-args`.
+    #[must_use]
+    pub fn renamed(mut self, args: &RosArgs) -> Self {
+        let surface = &mut self.config.node.options.surface;
+        *surface = surface.renamed(args);
+        self
     }
 
     /// Starts the pipeline.

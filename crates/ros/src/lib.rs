@@ -8,6 +8,7 @@ pub mod cdr;
 pub mod convert;
 pub mod definitions;
 pub mod msg;
+pub mod ros_args;
 pub mod ros_sink;
 pub mod surface;
 pub mod topics;
@@ -18,6 +19,7 @@ mod testing;
 
 pub use bag::{BagError, BagSink, LogTime};
 pub use convert::{Message, Messages, Outgoing};
+pub use ros_args::{LogLevel, RosArgs, RosArgsError};
 pub use ros_sink::{Network, RosError, RosOptions, RosSink};
 pub use surface::{InvalidSurface, Surface};
 pub use topics::{Topic, TopicKind, Topics};

@@ -1,5 +1,7 @@
 //! What the node looks like from outside: its name, its namespace, its frames.
 
+use crate::ros_args::{Renamed, RosArgs};
+
 /// Depth of the per-frame topics' history unless configured otherwise, messages.
 pub const DEFAULT_QUEUE_DEPTH: usize = 5;
 
@@ -16,6 +18,8 @@ pub struct Surface {
     pub base_frame: String,
     /// Messages that a per-frame topic keeps for slow readers; at least 1.
     pub queue_depth: usize,
+    /// Other names of topics, both absolute; none by default.
+    pub remapped: Vec<(String, String)>,
 }
 
 impl Default for Surface {
@@ -26,6 +30,7 @@ impl Default for Surface {
             namespace: "/".to_owned(),
             base_frame: "base_link".to_owned(),
             queue_depth: DEFAULT_QUEUE_DEPTH,
+            remapped: Vec::new(),
         }
     }
 }
@@ -75,6 +80,48 @@ impl Surface {
         Ok(())
     }
 
+    /// The same under the names that somebody asked for at start.
+    #[must_use]
+    pub fn renamed(&self, args: &RosArgs) -> Self {
+        let other = |what: Renamed| args.renamed(&self.node_name, |of| *of == what);
+        let named = |what, before: &str| other(what).unwrap_or(before).to_owned();
+        let mut renamed = Self {
+            node_name: named(Renamed::Node, &self.node_name),
+            namespace: named(Renamed::Namespace, &self.namespace),
+            ..self.clone()
+        };
+        for rule in &args.rules {
+            let is_ours = rule
+                .node
+                .as_ref()
+                .is_none_or(|node| *node == self.node_name);
+            if let (Renamed::Topic(from), true) = (&rule.what, is_ours) {
+                let both = (renamed.absolute(from), renamed.absolute(&rule.to));
+                renamed.remapped.push(both);
+            }
+        }
+        renamed
+    }
+
+    /// The name that a topic goes by: absolute, and another one where it was remapped.
+    #[must_use]
+    pub fn topic(&self, name: &str) -> String {
+        let name = self.absolute(name);
+        let mut rules = self.remapped.iter();
+        let other = rules.find(|(from, _)| *from == name);
+        other.map_or(name, |(_, to)| to.clone())
+    }
+
+    fn absolute(&self, name: &str) -> String {
+        if let Some(private) = name.strip_prefix("~/") {
+            return format!("{}/{private}", self.private_prefix());
+        }
+        if name.starts_with('/') {
+            return name.to_owned();
+        }
+        format!("{}/{name}", self.namespace.trim_end_matches('/'))
+    }
+
     /// What `~` stands for in a topic's name: `/<namespace>/<node>`.
     #[must_use]
     pub fn private_prefix(&self) -> String {
@@ -83,7 +130,7 @@ impl Surface {
     }
 }
 
-fn is_token(text: &str) -> bool {
+pub(crate) fn is_token(text: &str) -> bool {
     let legal = |c: char| c.is_ascii_alphanumeric() || c == '_';
     !text.is_empty()
         && !text.starts_with(|c: char| c.is_ascii_digit())
@@ -91,7 +138,7 @@ fn is_token(text: &str) -> bool {
         && text.chars().all(legal)
 }
 
-fn is_namespace(text: &str) -> bool {
+pub(crate) fn is_namespace(text: &str) -> bool {
     text == "/"
         || text
             .strip_prefix('/')
@@ -111,6 +158,24 @@ mod tests {
             ..root
         };
         assert_eq!(nested.private_prefix(), "/vehicle/one/roadwatch");
+    }
+
+    #[test]
+    fn names_asked_for_at_start_hold_for_the_node_and_its_topics() {
+        let tokens = "-r __node:=eyes -r __ns:=/one -r ~/front/objects:=objects -r /tf_static:=tf_static \
+                      -r roadwatch:~/back/objects:=/all -r other:~/left/objects:=/no";
+        let tokens: Vec<String> = tokens.split_whitespace().map(str::to_owned).collect();
+        let renamed = Surface::default().renamed(&RosArgs::parse(&tokens).expect("good"));
+        assert_eq!(renamed.check(), Ok(()));
+        assert_eq!(renamed.private_prefix(), "/one/eyes");
+        for (name, expected) in [
+            ("~/front/objects", "/one/objects"),
+            ("~/back/objects", "/all"),
+            ("~/left/objects", "/one/eyes/left/objects"),
+            ("/tf_static", "/one/tf_static"),
+        ] {
+            assert_eq!(renamed.topic(name), expected);
+        }
     }
 
     #[test]

@@ -123,12 +123,12 @@ impl Topics {
     #[must_use]
     pub fn new(rig: &Rig, surface: &Surface) -> Self {
         let below = |owner: &str, kind: TopicKind| Topic {
-            name: format!("{}/{owner}/{}", surface.private_prefix(), kind.suffix()),
+            name: surface.topic(&format!("~/{owner}/{}", kind.suffix())),
             kind,
             depth: surface.queue_depth,
         };
         let mut list = vec![Topic {
-            name: format!("/{}", TopicKind::TfStatic.suffix()),
+            name: surface.topic(&format!("/{}", TopicKind::TfStatic.suffix())),
             kind: TopicKind::TfStatic,
             depth: 1,
         }];

@@ -16,7 +16,7 @@ pub(super) const NOT_PLAYED: PlaybackOptions = PlaybackOptions {
 /// # Errors
 /// The mistakes.
 pub fn run(args: &ConfigArgs) -> Result<(), Failure> {
-    let session = Session::open(&args.config, None, NOT_PLAYED)?;
+    let session = Session::open(&args.config, None, NOT_PLAYED)?.renamed(&args.ros.read());
     let cameras: Vec<_> = session
         .rig
         .cameras()

@@ -34,6 +34,7 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     let stop = stop_on_signals()?;
     let dataset = args.dataset.clone().map(DatasetChoice::from);
     let session = Session::open(&args.config, dataset, playback(args)?)?;
+    let session = session.renamed(&args.ros.read());
     let mut sinks = sinks(args, &session)?;
     let scoring = if args.score {
         let scoring = Scoring::prepare(&session)?;

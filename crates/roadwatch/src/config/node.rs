@@ -24,6 +24,7 @@ pub(super) fn read(node: &Reader<'_, '_>) -> NodeConfig {
         queue_depth: node
             .integer("queue_depth", 1..=1000)
             .map_or(DEFAULT_QUEUE_DEPTH, |depth| depth as usize),
+        ..defaults
     };
     note_refused_names(node, &surface);
     let domain_id = node
