@@ -4,7 +4,7 @@
 mod photographed;
 mod support;
 
-use photographed::photograph;
+use photographed::{BOARD, photograph};
 use serde_json::Value;
 use std::{fs, path::Path};
 use support::{run, run_well, stderr, stdout, write};
@@ -13,15 +13,6 @@ use support::{run, run_well, stderr, stdout, write};
 fn calibrated(folder: &Path) -> (Value, String) {
     let file = |name: &str| folder.join(name).display().to_string();
     let (images, yaml, picture) = (file("*.png"), file("cam.yaml"), file("corners.jpeg"));
-    let board = [
-        "calibrate",
-        "camera",
-        "--board",
-        "8x6",
-        "--square-m",
-        "0.1",
-        "--json",
-    ];
     let files = [
         "--images",
         &images,
@@ -32,7 +23,7 @@ fn calibrated(folder: &Path) -> (Value, String) {
         "--camera",
         "front",
     ];
-    let output = run_well(&[&board[..], &files[..]].concat());
+    let output = run_well(&[&BOARD[..], &files[..]].concat());
     assert!(fs::metadata(picture).expect("the picture").len() > 10_000);
     (serde_json::from_str(&stdout(&output)).expect("JSON"), yaml)
 }

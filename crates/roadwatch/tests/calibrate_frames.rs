@@ -10,7 +10,7 @@ use opencv::{
     prelude::*,
     videoio::{CAP_FFMPEG, VideoWriter},
 };
-use photographed::photograph;
+use photographed::{BOARD, photograph};
 use serde_json::Value;
 use std::{
     fs,
@@ -23,15 +23,6 @@ use support::{run_well, stderr, stdout, write};
 
 /// Every picture is shown so often, as a hand holds a board still; the command looks at every fifth frame.
 const REPEATS: usize = 5;
-const BOARD: [&str; 7] = [
-    "calibrate",
-    "camera",
-    "--board",
-    "8x6",
-    "--square-m",
-    "0.1",
-    "--json",
-];
 /// What compression may do to a focal length.
 const NEAR: f64 = 0.01;
 

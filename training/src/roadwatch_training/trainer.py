@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -17,6 +16,7 @@ from .augment.recipe import Recipe
 from .averaging import AveragedWeights
 from .batches import Batch, BatchPlan, batches
 from .checkpoint import Checkpoint
+from .descent import descend, learning_rate, optimiser_of
 from .errors import TrainingError
 from .exported import read_exported, settle_normalisation
 from .images import ImageStore
@@ -26,10 +26,7 @@ from .settings import Settings
 
 CHECKPOINT_SECONDS = 120.0
 PROGRESS_SECONDS = 10.0
-# The learning rate ends at this share of its peak.
-FINAL_RATE_SHARE = 0.02
 MAX_GRADIENT_NORM = 10.0
-ADAM_BETAS = (0.9, 0.99)
 # Batches that say what an exported network's normalisations undo: five hundred examples settle a mean.
 SETTLING_BATCHES = 60
 
@@ -55,9 +52,7 @@ class Training:
             torch.set_num_threads(settings.threads)
         self.network = DetectorNetwork(SHAPES[settings.width]).to(memory_format=torch.channels_last)
         self.average = AveragedWeights(self.network)
-        self.optimiser = torch.optim.AdamW(
-            _parameter_groups(self.network, settings.weight_decay), settings.learning_rate, ADAM_BETAS
-        )
+        self.optimiser = optimiser_of(self.network, settings.learning_rate, settings.weight_decay)
         self.cells = Cells.of_input(settings.width_px, settings.height_px)
         self.settled = True
         self.batches_done = 0
@@ -145,23 +140,13 @@ class Training:
 
     def _step(self, network: nn.Module, batch: Batch) -> Losses:
         self.network.train()
-        for group in self.optimiser.param_groups:
-            group["lr"] = self._learning_rate()
         losses = detection_losses(network(batch.network_input()), batch.targets, self.cells)
-        self.optimiser.zero_grad(set_to_none=True)
-        losses.total.backward()
-        nn.utils.clip_grad_norm_(self.network.parameters(), MAX_GRADIENT_NORM)
-        self.optimiser.step()
+        s = self.settings
+        rate = learning_rate(s.learning_rate, s.warm_up_batches, self.batches_done, self.progress)
+        descend(self.network, self.optimiser, losses.total, rate, MAX_GRADIENT_NORM)
         self.average.update(self.network)
         self.batches_done += 1
         return losses
-
-    def _learning_rate(self) -> float:
-        """Rises over the warm-up, then falls along half a cosine."""
-        s = self.settings
-        rise = min(1.0, (self.batches_done + 1) / s.warm_up_batches)
-        fall = (1 + math.cos(math.pi * min(1.0, self.progress))) / 2
-        return s.learning_rate * rise * (FINAL_RATE_SHARE + (1 - FINAL_RATE_SHARE) * fall)
 
 
 class ProgressReport:
@@ -195,10 +180,3 @@ class ProgressReport:
             f"{speed:.1f} images/s  {left_minutes:.1f} min left"
         )
         self.since, self.last_said = [], time.monotonic()
-
-
-def _parameter_groups(network: nn.Module, weight_decay: float) -> list[dict]:
-    """Only filters decay; biases and normalisation do not."""
-    filters = [p for p in network.parameters() if p.ndim > 1]
-    others = [p for p in network.parameters() if p.ndim <= 1]
-    return [{"params": filters, "weight_decay": weight_decay}, {"params": others, "weight_decay": 0.0}]

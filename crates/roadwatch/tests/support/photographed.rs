@@ -8,6 +8,17 @@ use roadwatch_core::{CameraModel, Distortion, ImageSize, Intrinsics};
 use roadwatch_picture::Canvas;
 use std::path::Path;
 
+/// The command that calibrates from it.
+pub(crate) const BOARD: [&str; 7] = [
+    "calibrate",
+    "camera",
+    "--board",
+    "8x6",
+    "--square-m",
+    "0.1",
+    "--json",
+];
+
 /// Writes pictures of a chessboard with 8 x 6 inner corners and gives the camera that saw it.
 pub(crate) fn photograph(folder: &Path) -> CameraModel {
     let camera = CameraModel {

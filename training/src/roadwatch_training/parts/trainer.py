@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import torch
-from torch import nn
 
 from ..averaging import AveragedWeights
+from ..descent import descend, learning_rate, optimiser_of
 from .batches import PartsBatch, PartsPlan, batches
 from .features import FrozenFeatures
 from .losses import PartsLosses, parts_losses
@@ -20,10 +19,7 @@ from .settings import PartsSettings
 from .vehicles import Vehicle
 
 PROGRESS_SECONDS = 15.0
-# The learning rate ends at this share of its peak.
-FINAL_RATE_SHARE = 0.02
 MAX_GRADIENT_NORM = 5.0
-ADAM_BETAS = (0.9, 0.99)
 
 Say = Callable[[str], None]
 
@@ -49,9 +45,7 @@ class PartsTraining:
         head = PartsHead(features.channels(), settings.side_px)
         self.head = head.to(memory_format=torch.channels_last)
         self.average = AveragedWeights(self.head)
-        self.optimiser = torch.optim.AdamW(
-            _parameter_groups(self.head, settings.weight_decay), settings.learning_rate, ADAM_BETAS
-        )
+        self.optimiser = optimiser_of(self.head, settings.learning_rate, settings.weight_decay)
         self.batches_done = 0
         self.began = time.monotonic()
 
@@ -79,25 +73,15 @@ class PartsTraining:
 
     def _step(self, batch: PartsBatch) -> PartsLosses:
         self.head.train()
-        for group in self.optimiser.param_groups:
-            group["lr"] = self._learning_rate()
         maps = (torch.from_numpy(one) for one in self.features.of(batch.crops))
         maps = [one.to(memory_format=torch.channels_last) for one in maps]
         losses = parts_losses(*self.head(*maps), batch.targets)
-        self.optimiser.zero_grad(set_to_none=True)
-        losses.total.backward()
-        nn.utils.clip_grad_norm_(self.head.parameters(), MAX_GRADIENT_NORM)
-        self.optimiser.step()
+        s = self.settings
+        rate = learning_rate(s.learning_rate, s.warm_up_batches, self.batches_done, self.progress)
+        descend(self.head, self.optimiser, losses.total, rate, MAX_GRADIENT_NORM)
         self.average.update(self.head)
         self.batches_done += 1
         return losses
-
-    def _learning_rate(self) -> float:
-        """Rises over the warm-up, then falls along half a cosine."""
-        s = self.settings
-        rise = min(1.0, (self.batches_done + 1) / s.warm_up_batches)
-        fall = (1 + math.cos(math.pi * min(1.0, self.progress))) / 2
-        return s.learning_rate * rise * (FINAL_RATE_SHARE + (1 - FINAL_RATE_SHARE) * fall)
 
     def _report(self, since: list[PartsLosses], seconds: float) -> None:
         heat, facing = (sum(getattr(one, part) for one in since) / len(since) for part in ("heat", "facing"))
@@ -108,10 +92,3 @@ class PartsTraining:
             f"{100 * min(self.progress, 1):5.1f} %  {self.batches_done * self.settings.batch_size} crops  "
             f"heat {heat:.3f}  facing {facing:.3f}  {speed:.0f} crops/s  {left_minutes:.1f} min left"
         )
-
-
-def _parameter_groups(network: nn.Module, weight_decay: float) -> list[dict]:
-    """Only filters decay; biases and normalisation do not."""
-    filters = [p for p in network.parameters() if p.ndim > 1]
-    others = [p for p in network.parameters() if p.ndim <= 1]
-    return [{"params": filters, "weight_decay": weight_decay}, {"params": others, "weight_decay": 0.0}]

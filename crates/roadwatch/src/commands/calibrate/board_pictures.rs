@@ -24,22 +24,20 @@ const EXTENSIONS: [&str; 5] = ["jpg", "jpeg", "png", "bmp", "tiff"];
 
 /// Looks for the board in every picture.
 pub(super) fn look(args: &CalibrateCameraArgs, board: Board) -> Result<Looked, Failure> {
-    if let Some(name) = &args.live {
-        return look_live(name, args.views as usize, board);
-    }
-    let looked = match (&args.images, &args.video, &args.drive) {
-        (Some(pattern), _, _) => look_at_files(&list(pattern)?, board),
-        (_, Some(file), _) => {
+    let looked = match (&args.images, &args.video, &args.drive, &args.live) {
+        (Some(pattern), ..) => look_at_files(&list(pattern)?, board),
+        (_, Some(file), ..) => {
             let size = video_size(file).map_err(anyhow::Error::from)?;
             let video = VideoFile::open(file, size, Timestamp::from_nanos(0));
             let video = video.map_err(anyhow::Error::from)?;
             look_at_frames(args, AnyRecording::Video(video), board)
         }
-        (_, _, Some(folder)) => {
+        (_, _, Some(folder), _) => {
             let dataset = RigDataset::open(folder).map_err(anyhow::Error::from)?;
             look_at_frames(args, recording(&dataset, args.camera.as_deref())?, board)
         }
-        (None, None, None) => Err(anyhow!("--images, --video, --drive or --live is missing")),
+        (.., Some(name)) => return look_live(name, args.views as usize, board),
+        (None, None, None, None) => Err(anyhow!("--images, --video, --drive or --live is missing")),
     };
     Ok(looked?)
 }
