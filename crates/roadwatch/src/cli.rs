@@ -32,7 +32,7 @@ const QUIET_MIDDLEWARE: &str = "ros2_client=error,rustdds=off";
 
 /// Real-time multi-camera perception: camera images in, poses with 3D boxes out over ROS 2.
 ///
-/// Start with `roadwatch run config/pandaset.toml`, and see what it would do with `roadwatch graph`.
+/// Start with `roadwatch run config/demo.toml`, and see what it would do with `roadwatch graph`.
 #[derive(Debug, Parser)]
 #[command(name = "roadwatch", version, arg_required_else_help = true)]
 pub struct Cli {
@@ -122,7 +122,7 @@ pub enum Pace {
 #[command(
     args_override_self = true,
     after_help = "Examples:\n  \
-    roadwatch run config/pandaset.toml\n  \
+    roadwatch run config/demo.toml\n  \
     roadwatch run config/pandaset.toml --pace lossless --bag out\n  \
     roadwatch run config/pandaset.toml --pace lossless --score --pictures pictures\n  \
     roadwatch run config/pandaset.toml --loop --speed 2"
