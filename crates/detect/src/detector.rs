@@ -5,7 +5,7 @@ use crate::{
     letterbox::{Letterbox, Placement, Values},
     network::Network,
     nms::{Candidate, suppress},
-    options::{DetectorError, DetectorOptions, class_names, kinds, thresholds},
+    options::{ClassFilter, DetectorError, DetectorOptions, class_names, kinds, thresholds},
     rhythm::Rhythm,
     workspace::{Workspace, Workspaces},
 };
@@ -26,8 +26,7 @@ pub struct YoloDetector {
     placement: Placement,
     values: Values,
     classes: Vec<ObjectClass>,
-    /// Per class; infinite for classes nobody wants.
-    thresholds: Vec<f32>,
+    filter: RwLock<Arc<Filter>>,
     /// Per class: what suppression takes for it.
     kinds: Vec<u16>,
     iou_threshold: f32,
@@ -37,7 +36,45 @@ pub struct YoloDetector {
     rhythm: Rhythm,
 }
 
+/// What is kept of the network's answers.
+struct Filter {
+    wanted: ClassFilter,
+    /// Per class; infinite for classes nobody wants.
+    thresholds: Vec<f32>,
+}
+
 impl YoloDetector {
+    /// Which detections are wanted now.
+    #[must_use]
+    pub fn filter(&self) -> ClassFilter {
+        self.kept().wanted.clone()
+    }
+
+    /// Wants others from the next image on.
+    ///
+    /// # Errors
+    /// [`DetectorError::UnknownClasses`]; then all stays as it was.
+    pub fn set_filter(&self, wanted: ClassFilter) -> Result<(), DetectorError> {
+        let thresholds = thresholds(&self.classes, &wanted)?;
+        let filter = Arc::new(Filter { wanted, thresholds });
+        *self.filter.write().unwrap_or_else(PoisonError::into_inner) = filter;
+        Ok(())
+    }
+
+    /// What runs the network.
+    #[must_use]
+    pub fn provider(&self) -> &'static str {
+        self.network
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .provider()
+    }
+
+    fn kept(&self) -> Arc<Filter> {
+        let filter = self.filter.read().unwrap_or_else(PoisonError::into_inner);
+        Arc::clone(&filter)
+    }
+
     /// Opens the model and checks it against the options.
     ///
     /// # Errors
@@ -66,7 +103,10 @@ impl YoloDetector {
             placement,
             values,
             classes,
-            thresholds,
+            filter: RwLock::new(Arc::new(Filter {
+                wanted: options.filter.clone(),
+                thresholds,
+            })),
             kinds,
             iou_threshold: options.iou_threshold,
             max_detections: options.max_detections,
@@ -129,11 +169,12 @@ impl YoloDetector {
         } = work;
         raw.resize_with(self.batch, Vec::new);
         raw.iter_mut().for_each(Vec::clear);
+        let filter = self.kept();
         let mut network = self.network.lock().unwrap_or_else(PoisonError::into_inner);
         let began = Instant::now();
         self.rhythm.running(began);
         let ran = network.run(input, images, |at, head, output| {
-            head.decode(output, &self.thresholds, best, &mut raw[at]);
+            head.decode(output, &filter.thresholds, best, &mut raw[at]);
         });
         self.rhythm.ran(began.elapsed());
         ran.map_err(|error| error.to_string())

@@ -4,7 +4,14 @@ use roadwatch_core::{
     Detection, Frame, Heading, KeptHeading, Known, Located, Locator, Oriented, PerFrame, Perceived,
     Reidentifier, RotationError, RotationEstimator,
 };
-use std::{cmp::Reverse, time::Duration};
+use std::{
+    cmp::Reverse,
+    sync::{
+        Arc,
+        atomic::{AtomicUsize, Ordering},
+    },
+    time::Duration,
+};
 
 /// Locators, headings and memory. One synchronous step per frame; no thread, no clock, no I/O.
 pub struct Perceiver {
@@ -21,7 +28,8 @@ pub struct Rotating {
     /// The estimator.
     pub estimator: Box<dyn RotationEstimator>,
     /// Most objects of a frame that are looked at: those that are longest without a heading of their own first.
-    pub crops_per_frame: usize,
+    /// May be changed while it runs.
+    pub crops_per_frame: Arc<AtomicUsize>,
 }
 
 impl Perceiver {
@@ -94,7 +102,7 @@ impl Rotating {
         let mut wanted: Vec<usize> = wanted.collect();
         let age = |at: usize| objects[at].heading.map_or(Duration::MAX, |kept| kept.age);
         wanted.sort_by_key(|&at| Reverse(age(at)));
-        wanted.truncate(self.crops_per_frame);
+        wanted.truncate(self.crops_per_frame.load(Ordering::Relaxed));
         wanted
     }
 }
@@ -202,7 +210,7 @@ mod tests {
         let asked = Arc::new(Mutex::new(Vec::new()));
         let mut rotating = Rotating {
             estimator: Box::new(Asked(Arc::clone(&asked))),
-            crops_per_frame: 3,
+            crops_per_frame: Arc::new(AtomicUsize::new(3)),
         };
         let mut objects = [
             object(1.0, "car", Some(100)),

@@ -13,7 +13,7 @@ use roadwatch_pipeline::{
     perceive::{Perceiver, Rotating},
     start,
 };
-use std::sync::{Arc, Mutex, mpsc::sync_channel};
+use std::sync::{Arc, Mutex, atomic::AtomicUsize, mpsc::sync_channel};
 use support::{ChannelSink, ChannelSource, NoMemory, OneBoxDetector, PATIENCE, RealClock};
 
 /// Places everything 20 m ahead.
@@ -78,7 +78,7 @@ fn a_frame_without_headings_is_counted_and_published_all_the_same() {
             locators: vec![Box::new(Ahead)],
             rotation: Some(Rotating {
                 estimator: Box::new(EveryOther(Arc::clone(&calls))),
-                crops_per_frame: 1,
+                crops_per_frame: Arc::new(AtomicUsize::new(1)),
             }),
             reidentifier: Box::new(NoMemory),
         },

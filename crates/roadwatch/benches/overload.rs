@@ -7,7 +7,7 @@
 
 mod drive;
 
-use roadwatch::session::Session;
+use roadwatch::{config::Changes, session::Session};
 use roadwatch_camera::{Pace, PlaybackOptions, Repeat, Speed};
 use roadwatch_pipeline::{Edge, NamedSink, Outcome, Overload, PipelineOptions};
 use roadwatch_ros::{BagSink, LogTime};
@@ -62,7 +62,7 @@ fn machine_fps(config: &Path) -> f64 {
         repeat: Repeat::Loop,
         frame_limit: Some(CALIBRATION_FRAMES),
     };
-    let session = Session::open(config, None, playback).expect("opens");
+    let session = Session::open(config, &Changes::default(), playback).expect("opens");
     let began = Instant::now();
     let running = session
         .start(Vec::new(), PipelineOptions::new(Overload::Wait))
@@ -86,7 +86,7 @@ fn measure(config: &Path, speed: Speed) -> Measured {
         repeat: Repeat::Loop,
         frame_limit: None,
     };
-    let session = Session::open(config, None, playback).expect("opens");
+    let session = Session::open(config, &Changes::default(), playback).expect("opens");
     let cameras = session.rig.ids();
     let folder = tempfile::tempdir().expect("a folder");
     let bag = BagSink::create(

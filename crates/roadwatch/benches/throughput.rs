@@ -4,7 +4,7 @@
 
 mod drive;
 
-use roadwatch::session::Session;
+use roadwatch::{config::Changes, session::Session};
 use roadwatch_camera::{Pace, PlaybackOptions, Repeat};
 use roadwatch_core::Frame;
 use roadwatch_detect::{
@@ -124,7 +124,7 @@ fn run_bare(network: &mut Network, tensors: &[Vec<f32>]) -> Side {
 }
 
 fn run_pipeline(config: &Path) -> Side {
-    let session = Session::open(config, None, PLAYBACK).expect("opens");
+    let session = Session::open(config, &Changes::default(), PLAYBACK).expect("opens");
     Side::time(FRAMES as u32 * CAMERAS, || {
         let running = session
             .start(Vec::new(), PipelineOptions::new(Overload::Wait))

@@ -19,16 +19,16 @@ pub use rotation::{
 pub use study::{StudyArgs, StudyBoxes};
 pub use table::{TableBuildArgs, TableCommand, TableInspectArgs, TableQueryArgs};
 
-use crate::{commands, failure::Failure};
+use crate::{commands, failure::Failure, node::RosoutTap};
 use clap::{Args, CommandFactory as _, Parser, Subcommand, ValueEnum, error::ErrorKind};
 use roadwatch_ros::RosArgs;
 use std::{ffi::OsString, io::IsTerminal as _, path::PathBuf, process::ExitCode};
-use tracing_subscriber::EnvFilter;
+use tracing_subscriber::{EnvFilter, layer::SubscriberExt as _, util::SubscriberInitExt as _};
 
 /// The middleware warns of what is normal here (no ROS installation) and reports errors on every clean
 /// exit, so it is heard only when asked.
-const DEFAULT_LOG: &str = "warn,ros2_client=error,rustdds=off";
-const QUIET_MIDDLEWARE: &str = "ros2_client=error,rustdds=off";
+const DEFAULT_LOG: &str = "warn,ros2_client=off,rustdds=off";
+const QUIET_MIDDLEWARE: &str = "ros2_client=off,rustdds=off";
 
 /// Real-time multi-camera perception: camera images in, poses with 3D boxes out over ROS 2.
 ///
@@ -85,7 +85,7 @@ pub struct ConfigArgs {
 #[derive(Debug, Args)]
 pub struct RosArguments {
     /// ROS 2's own arguments, up to `--` or the end: -r __node:=NAME, -r __ns:=/NAMESPACE, -r TOPIC:=OTHER,
-    /// --log-level LEVEL.
+    /// -p KEY:=VALUE (any key of the configuration), --params-file FILE.yaml, --log-level LEVEL.
     #[arg(
         long = "ros-args",
         value_name = "ROS",
@@ -178,13 +178,17 @@ pub fn main_with(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Ok(cli) => cli,
         Err(error) => error.exit(),
     };
-    tracing_subscriber::fmt()
-        .with_env_filter(EnvFilter::new(log_filter(&cli)))
+    let rosout = RosoutTap::default();
+    let lines = tracing_subscriber::fmt::layer()
         .with_writer(std::io::stderr)
         .with_ansi(std::io::stderr().is_terminal())
-        .with_target(false)
+        .with_target(false);
+    tracing_subscriber::registry()
+        .with(EnvFilter::new(log_filter(&cli)))
+        .with(lines)
+        .with(rosout.clone())
         .init();
-    match run(cli.command) {
+    match run(cli.command, &rosout) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             eprintln!("{failure}");
@@ -206,9 +210,9 @@ fn log_filter(cli: &Cli) -> String {
     }
 }
 
-fn run(command: Command) -> Result<(), Failure> {
+fn run(command: Command, rosout: &RosoutTap) -> Result<(), Failure> {
     match command {
-        Command::Run(args) => commands::run::run(&args),
+        Command::Run(args) => commands::run::run(&args, rosout),
         Command::Check(args) => commands::check::run(&args),
         Command::Graph(args) => commands::graph::run(&args),
         Command::Calibrate(command) => commands::calibrate::run(&command),

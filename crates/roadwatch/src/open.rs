@@ -15,7 +15,7 @@ use roadwatch_rotate::{
     Calibration, ComponentModelError, ComponentNetwork, EstimatorError, Forest,
     KeyComponentEstimator, PositionCurve,
 };
-use std::sync::Arc;
+use std::sync::{Arc, atomic::AtomicUsize};
 
 const CURVE_KEY: &str = "rotation.position_curve";
 /// Beginning of a rig without any stamp: one second, as tf takes zero for "latest".
@@ -111,7 +111,7 @@ pub fn rotation(config: &Config, notes: &mut Notes) -> Result<Option<Rotating>, 
     })?;
     Ok(Some(Rotating {
         estimator: Box::new(estimator),
-        crops_per_frame: rotation.crops_per_frame,
+        crops_per_frame: Arc::new(AtomicUsize::new(rotation.crops_per_frame)),
     }))
 }
 

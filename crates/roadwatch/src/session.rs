@@ -1,23 +1,24 @@
 //! One run of the pipeline: built from a configuration, watched until it ends.
 
 use crate::{
-    clock::{SystemClock, wall_time},
-    config::{Config, DatasetChoice, Environment, Mistakes},
+    clock::SystemClock,
+    config::{Changes, Config, Environment, Mistakes},
     failure::Failure,
     open,
+    switches::Switches,
 };
 use anyhow::Context as _;
 use roadwatch_camera::{DecodeCount, PlaybackOptions};
-use roadwatch_core::{Detector, FrameSource, Locator, Rig};
+use roadwatch_core::{FrameSource, Locator, Rig};
+use roadwatch_detect::YoloDetector;
 use roadwatch_pipeline::{
     NamedSink, Outcome, PipelineOptions, Running, Stages,
     perceive::{Perceiver, Rotating},
     start,
 };
 use roadwatch_reid::LeftToRight;
-use roadwatch_ros::RosArgs;
 use std::{
-    sync::Arc,
+    sync::{Arc, atomic::AtomicUsize},
     time::{Duration, Instant},
 };
 
@@ -32,23 +33,36 @@ pub struct Session {
     pub rig: Arc<Rig>,
     /// Counts the images that are decoded.
     pub decodes: DecodeCount,
+    /// What can be changed while it runs.
+    pub controls: Controls,
     sources: Vec<Box<dyn FrameSource>>,
-    detector: Arc<dyn Detector>,
+    detector: Arc<YoloDetector>,
     locators: Vec<Box<dyn Locator>>,
     rotation: Option<Rotating>,
 }
 
+/// What can be changed while it runs.
+#[derive(Clone)]
+pub struct Controls {
+    /// Which detections are kept.
+    pub detector: Arc<YoloDetector>,
+    /// How many objects of a frame are looked at for headings; `None` where none are.
+    pub crops_per_frame: Option<Arc<AtomicUsize>>,
+    /// Which cameras are looked at.
+    pub switches: Switches,
+}
+
 impl Session {
-    /// Reads a configuration and opens everything it names.
+    /// Reads a configuration, with what the command line changes in it, and opens everything it names.
     ///
     /// # Errors
     /// Every mistake at once.
     pub fn open(
         config: &std::path::Path,
-        dataset: Option<DatasetChoice>,
+        changes: &Changes,
         playback: PlaybackOptions,
     ) -> Result<Self, Mistakes> {
-        let config = Config::load(config, dataset, &Environment::of_process())?;
+        let config = Config::load(config, changes, &Environment::of_process())?;
         let mut notes = config.notes.clone();
         let decodes = DecodeCount::default();
         let detector = open::detector(&config, &mut notes);
@@ -58,25 +72,26 @@ impl Session {
         let rig = open::shared_rig(&config);
         notes.finish()?;
         match (rig, sources, detector, locators, rotation) {
-            (Some(rig), Some(sources), Some(detector), Some(locators), Ok(rotation)) => Ok(Self {
-                config,
-                rig,
-                decodes,
-                sources,
-                detector: Arc::new(detector),
-                locators,
-                rotation,
-            }),
+            (Some(rig), Some(sources), Some(detector), Some(locators), Ok(rotation)) => {
+                let detector = Arc::new(detector);
+                let controls = Controls {
+                    detector: Arc::clone(&detector),
+                    crops_per_frame: rotation.as_ref().map(|r| Arc::clone(&r.crops_per_frame)),
+                    switches: Switches::new(&config.enabled),
+                };
+                Ok(Self {
+                    config,
+                    rig,
+                    decodes,
+                    controls,
+                    sources,
+                    detector,
+                    locators,
+                    rotation,
+                })
+            }
             _ => unreachable!("what could not be opened was noted"),
         }
-    }
-
-    /// Under the names that somebody asked for behind `--ros-args`.
-    #[must_use]
-    pub fn renamed(mut self, args: &RosArgs) -> Self {
-        let surface = &mut self.config.node.options.surface;
-        *surface = surface.renamed(args);
-        self
     }
 
     /// Starts the pipeline.
@@ -89,7 +104,7 @@ impl Session {
         options: PipelineOptions,
     ) -> Result<Running, Failure> {
         let stages = Stages {
-            sources: self.sources,
+            sources: self.controls.switches.put_before(self.sources),
             detector: self.detector,
             perceiver: Perceiver {
                 locators: self.locators,
@@ -159,10 +174,4 @@ fn drain(running: &Running) {
             tracing::error!(error = %panicked, "another stage ended by a bug");
         }
     }
-}
-
-/// The stamp of messages that belong to no frame.
-#[must_use]
-pub fn start_stamp() -> roadwatch_core::Timestamp {
-    wall_time()
 }

@@ -18,7 +18,7 @@ use crate::{
     surface::{InvalidSurface, Surface},
     topics::{Topic, TopicKind, Topics},
 };
-use roadwatch_core::{Output, Perceived, Rig, Scene, Timestamp};
+use roadwatch_core::{CameraId, Output, Perceived, Rig, Scene, Timestamp};
 use seen::SeenTogether;
 use serde::Serialize;
 use std::{ops::Range, sync::Arc};
@@ -99,9 +99,30 @@ impl Messages {
     /// The messages of one output, in order of publishing. Nothing seen gives empty arrays.
     #[must_use]
     pub fn of(&self, output: &Output) -> Vec<Outgoing> {
+        self.of_wanted(output, |_topic| true)
+    }
+
+    /// Those of [`Messages::of`] whose topics, by their places, are `wanted`; the others are not made.
+    #[must_use]
+    pub fn of_wanted(&self, output: &Output, wanted: impl Fn(usize) -> bool) -> Vec<Outgoing> {
+        let wanted = |places: Range<usize>| places.filter(|&topic| wanted(topic)).collect();
         match output {
-            Output::Camera(perceived) => self.of_camera(perceived),
-            Output::Scene(scene) => self.of_scene(scene),
+            Output::Camera(perceived) => {
+                let topics = self.topics.of_camera(perceived.tracks.frame.camera);
+                self.of_camera(perceived, wanted(topics))
+            }
+            Output::Scene(scene) => self.of_scene(scene, wanted(self.topics.of_scene())),
+        }
+    }
+
+    /// Markers that take away what is shown of a camera.
+    #[must_use]
+    pub fn no_markers(&self, camera: CameraId, stamp: Timestamp) -> Outgoing {
+        let topics = self.topics.of_camera(camera);
+        let is_markers = |&topic: &usize| self.topics()[topic].kind == TopicKind::Markers;
+        Outgoing {
+            topic: topics.clone().find(is_markers).unwrap_or(topics.start),
+            message: Message::Markers(markers::none(&self.base_frame, stamp)),
         }
     }
 
@@ -115,40 +136,53 @@ impl Messages {
         }
     }
 
-    fn of_camera(&self, perceived: &Perceived) -> Vec<Outgoing> {
-        let id = perceived.tracks.frame.camera;
-        let camera = self.rig.camera(id);
+    fn of_camera(&self, perceived: &Perceived, topics: Vec<usize>) -> Vec<Outgoing> {
+        if topics.is_empty() {
+            return Vec::new();
+        }
+        let camera = self.rig.camera(perceived.tracks.frame.camera);
         let seen = SeenTogether::in_camera(&self.rig, &self.base_frame, &perceived.tracks);
-        let messages = [
-            Message::Objects(objects::objects(&seen)),
-            Message::Detections2d(detections::detections_2d(
+        self.addressed(topics, |kind| match kind {
+            TopicKind::Detections2d => Message::Detections2d(detections::detections_2d(
                 &seen,
                 &perceived.unlocated,
                 camera,
             )),
-            Message::Detections3d(detections::detections_3d(&seen)),
-            Message::Markers(markers::markers(&seen)),
-            Message::CameraInfo(Box::new(calibration::camera_info(camera, seen.stamp))),
-        ];
-        addressed(self.topics.of_camera(id), messages)
+            TopicKind::CameraInfo => {
+                Message::CameraInfo(Box::new(calibration::camera_info(camera, seen.stamp)))
+            }
+            shared => of_objects(shared, &seen),
+        })
     }
 
-    fn of_scene(&self, scene: &Scene) -> Vec<Outgoing> {
+    fn of_scene(&self, scene: &Scene, topics: Vec<usize>) -> Vec<Outgoing> {
+        if topics.is_empty() {
+            return Vec::new();
+        }
         let seen = SeenTogether::in_scene(&self.rig, &self.base_frame, scene);
-        let messages = [
-            Message::Objects(objects::objects(&seen)),
-            Message::Detections3d(detections::detections_3d(&seen)),
-            Message::Markers(markers::markers(&seen)),
-        ];
-        addressed(self.topics.of_scene(), messages)
+        self.addressed(topics, |kind| of_objects(kind, &seen))
+    }
+
+    fn addressed(
+        &self,
+        topics: Vec<usize>,
+        message: impl Fn(TopicKind) -> Message,
+    ) -> Vec<Outgoing> {
+        let addressed = |topic: usize| Outgoing {
+            topic,
+            message: message(self.topics()[topic].kind),
+        };
+        topics.into_iter().map(addressed).collect()
     }
 }
 
-fn addressed<const N: usize>(places: Range<usize>, messages: [Message; N]) -> Vec<Outgoing> {
-    places
-        .zip(messages)
-        .map(|(topic, message)| Outgoing { topic, message })
-        .collect()
+/// What cameras and the scene have in common.
+fn of_objects(kind: TopicKind, seen: &SeenTogether<'_>) -> Message {
+    match kind {
+        TopicKind::Detections3d => Message::Detections3d(detections::detections_3d(seen)),
+        TopicKind::Markers => Message::Markers(markers::markers(seen)),
+        _ => Message::Objects(objects::objects(seen)),
+    }
 }
 
 #[cfg(test)]

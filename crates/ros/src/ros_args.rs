@@ -2,6 +2,7 @@
 //! line arguments").
 
 use crate::surface::{is_namespace, is_token};
+use std::path::PathBuf;
 
 /// What was asked for behind `--ros-args`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -10,6 +11,24 @@ pub struct RosArgs {
     pub rules: Vec<RemapRule>,
     /// `--log-level`; the last one given for everything.
     pub log_level: Option<LogLevel>,
+    /// Files of parameters, and parameters; what stands later counts.
+    pub parameters: Vec<ParameterRule>,
+}
+
+/// Values for parameters, of one node or of any.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ParameterRule {
+    /// `-p`: one parameter.
+    Value {
+        /// The node it is for, by the name it has without rules; `None` for any.
+        node: Option<String>,
+        /// The parameter.
+        name: String,
+        /// Its value, as YAML.
+        yaml: String,
+    },
+    /// `--params-file`: a YAML file.
+    File(PathBuf),
 }
 
 /// `from:=to`, for one node or for any.
@@ -88,6 +107,9 @@ pub enum RosArgsError {
         "`{0}` is no remapping: expected FROM:=TO, such as __node:=front or scene/objects:=/objects"
     )]
     Rule(String),
+    /// Not `name:=value`.
+    #[error("`{0}` is no parameter: expected NAME:=VALUE, such as detector.score_threshold:=0.4")]
+    Parameter(String),
     /// A name that ROS 2 would refuse.
     #[error("`{rule}`: `{name}` is not {expected}")]
     Name {
@@ -106,7 +128,6 @@ pub enum RosArgsError {
     Unsupported(String, &'static str),
 }
 
-const NO_PARAMETERS: &str = "this node has no parameters; set keys of the configuration instead";
 const NO_SECURITY: &str = "DDS security is not supported";
 const NO_LOGGER: &str =
     "levels are of the whole program, and its log goes to standard error; give a filter with --log";
@@ -120,23 +141,18 @@ impl RosArgs {
         let mut read = Self::default();
         let mut tokens = tokens.iter();
         while let Some(token) = tokens.next() {
+            let mut value = || tokens.next().ok_or(RosArgsError::NoValue(token.clone()));
             let unsupported = |why| Err(RosArgsError::Unsupported(token.clone(), why));
             match token.as_str() {
-                "-r" | "--remap" => {
-                    let rule = tokens.next().ok_or(RosArgsError::NoValue(token.clone()))?;
-                    read.rules.push(RemapRule::parse(rule)?);
+                "-r" | "--remap" => read.rules.push(RemapRule::parse(value()?)?),
+                "-p" | "--param" => read.parameters.push(ParameterRule::parse(value()?)?),
+                "--params-file" => {
+                    let file = ParameterRule::File(PathBuf::from(value()?));
+                    read.parameters.push(file);
                 }
-                "--log-level" => {
-                    let level = tokens.next().ok_or(RosArgsError::NoValue(token.clone()))?;
-                    if level.contains(":=") {
-                        return Err(RosArgsError::Unsupported(level.clone(), NO_LOGGER));
-                    }
-                    let known = LogLevel::from_name(level);
-                    read.log_level = Some(known.ok_or(RosArgsError::Level(level.clone()))?);
-                }
+                "--log-level" => read.log_level = Some(log_level(value()?)?),
                 // There are none to disable; launch files pass these anyway.
-                "--disable-rosout-logs" | "--disable-external-lib-logs" | "--ros-args" => {}
-                "-p" | "--param" | "--params-file" => return unsupported(NO_PARAMETERS),
+                "--disable-external-lib-logs" | "--disable-rosout-logs" | "--ros-args" => {}
                 "-e" | "--enclave" => return unsupported(NO_SECURITY),
                 "--log-config-file" => return unsupported(NO_LOGGER),
                 _ => return unsupported("nothing of that name is known behind --ros-args"),
@@ -151,6 +167,32 @@ impl RosArgs {
         let rules = self.rules.iter().filter(of_node);
         let mut fitting = rules.filter(|rule| fits(&rule.what));
         fitting.next().map(|rule| rule.to.as_str())
+    }
+}
+
+fn log_level(text: &str) -> Result<LogLevel, RosArgsError> {
+    if text.contains(":=") {
+        return Err(RosArgsError::Unsupported(text.to_owned(), NO_LOGGER));
+    }
+    LogLevel::from_name(text).ok_or_else(|| RosArgsError::Level(text.to_owned()))
+}
+
+impl ParameterRule {
+    fn parse(text: &str) -> Result<Self, RosArgsError> {
+        let malformed = || RosArgsError::Parameter(text.to_owned());
+        let (name, yaml) = text.split_once(":=").ok_or_else(malformed)?;
+        let (node, name) = match name.split_once(':') {
+            Some((node, name)) => (Some(node.to_owned()), name),
+            None => (None, name),
+        };
+        if name.is_empty() || name.contains(char::is_whitespace) {
+            return Err(malformed());
+        }
+        Ok(Self::Value {
+            node,
+            name: name.to_owned(),
+            yaml: yaml.to_owned(),
+        })
     }
 }
 
@@ -226,6 +268,24 @@ mod tests {
     }
 
     #[test]
+    fn parameters_stay_in_order_and_may_be_for_one_node() {
+        let args = parsed("-p a.b:=[x] --params-file p.yaml --param eyes:c:=1").expect("good");
+        let value = |node: Option<&str>, name: &str, yaml: &str| ParameterRule::Value {
+            node: node.map(str::to_owned),
+            name: name.to_owned(),
+            yaml: yaml.to_owned(),
+        };
+        assert_eq!(
+            args.parameters,
+            [
+                value(None, "a.b", "[x]"),
+                ParameterRule::File("p.yaml".into()),
+                value(Some("eyes"), "c", "1"),
+            ]
+        );
+    }
+
+    #[test]
     fn what_cannot_be_followed_says_why() {
         for (text, expected) in [
             ("-r", "`-r` wants a value"),
@@ -235,8 +295,8 @@ mod tests {
             ("-r a//b:=c", "`a//b` is not a topic's name"),
             ("--log-level loud", "expected debug, info"),
             ("--log-level rcl:=debug", "give a filter with --log"),
-            ("-p use_sim_time:=true", "set keys of the configuration"),
-            ("--params-file p.yaml", "set keys of the configuration"),
+            ("-p use_sim_time", "expected NAME:=VALUE"),
+            ("--params-file", "wants a value"),
             ("--enclave /a", "DDS security"),
             ("--what", "nothing of that name"),
         ] {

@@ -6,7 +6,7 @@ mod common;
 mod python;
 
 use roadwatch_core::{Rig, Sink, Timestamp};
-use roadwatch_ros::{Network, RosOptions, RosSink, Surface};
+use roadwatch_ros::{Network, Outlets, PublishOptions, RosNode, RosOptions, RosSink, Surface};
 use serde_json::Value;
 use std::{
     io::{BufRead, BufReader, Lines},
@@ -84,13 +84,9 @@ fn rig() -> Arc<Rig> {
 }
 
 /// Until the node, too, knows of `count` readers on every topic.
-fn wait_for_readers(sink: &RosSink, count: usize) {
+fn wait_for_readers(node: &RosNode, topics: &[&str], count: usize) {
     let deadline = Instant::now() + PATIENCE;
-    while sink
-        .topics()
-        .iter()
-        .any(|topic| sink.readers_of(topic) < count)
-    {
+    while topics.iter().any(|topic| node.readers_of(topic) < count) {
         assert!(Instant::now() < deadline, "readers not discovered");
         thread::park_timeout(INTERVAL);
     }
@@ -136,8 +132,10 @@ fn every_topic_arrives_and_a_killed_reader_disturbs_nobody() {
         return;
     };
     // `/tf_static` is published here, before anybody listens.
-    let mut sink = RosSink::start(rig(), &options(), Timestamp::from_nanos(7)).expect("started");
-    let names: Vec<String> = sink
+    let node = RosNode::start(&options(), Vec::new()).expect("started");
+    let (publishing, stamp) = (PublishOptions::default(), Timestamp::from_nanos(7));
+    let outlets = Outlets::announce(&node, rig(), publishing, stamp).expect("announced");
+    let names: Vec<String> = outlets
         .topics()
         .iter()
         .map(|topic| topic.name.clone())
@@ -146,7 +144,8 @@ fn every_topic_arrives_and_a_killed_reader_disturbs_nobody() {
     let (mut doomed, mut survivor) = (Reader::start(first, &names), Reader::start(second, &names));
     doomed.wait_for("matched");
     survivor.wait_for("matched");
-    wait_for_readers(&sink, 2);
+    wait_for_readers(&node, &names, 2);
+    let mut sink = RosSink(outlets);
 
     for round in 0..ROUNDS {
         for output in common::outputs(round) {
@@ -180,7 +179,7 @@ fn a_domain_that_dds_does_not_have_is_refused() {
         domain_id: 233,
         ..options()
     };
-    let error = RosSink::start(rig(), &beyond, Timestamp::from_nanos(1)).expect_err("refused");
+    let error = RosNode::start(&beyond, Vec::new()).expect_err("refused");
     assert_eq!(
         error.to_string(),
         "domain id 233 is out of range: DDS has the domains 0 to 232"

@@ -2,7 +2,7 @@
 
 #![expect(dead_code, reason = "each benchmark uses its part")]
 
-use roadwatch::config::{Config, Environment};
+use roadwatch::config::{Changes, Config, Environment};
 use roadwatch_camera::StillImage;
 use roadwatch_core::{CameraId, Frame, Image, ImageSize, Timestamp};
 use roadwatch_detect::{
@@ -46,8 +46,8 @@ impl Drive {
         let (before, rotation) = shipped.split_once("[rotation]").expect("headings");
         let (_, after) = rotation.split_once("\n\n").expect("more tables");
         fs::write(&config, [before, after].concat()).expect("written");
-        let read =
-            Config::load(&config, None, &Environment::of_process()).expect("a configuration");
+        let read = Config::load(&config, &Changes::default(), &Environment::of_process())
+            .expect("a configuration");
         let parts = read.detector.zip(read.rig.and_then(|rig| rig.dataset));
         let Some((detector, dataset)) =
             parts.filter(|(detector, _)| detector.options.model.is_file())

@@ -16,7 +16,7 @@ pub(super) const NOT_PLAYED: PlaybackOptions = PlaybackOptions {
 /// # Errors
 /// The mistakes.
 pub fn run(args: &ConfigArgs) -> Result<(), Failure> {
-    let session = Session::open(&args.config, None, NOT_PLAYED)?.renamed(&args.ros.read());
+    let session = Session::open(&args.config, &args.ros.read().into(), NOT_PLAYED)?;
     let cameras: Vec<_> = session
         .rig
         .cameras()

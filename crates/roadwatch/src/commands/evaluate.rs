@@ -3,7 +3,7 @@
 use super::{output::say, progress::Progress, scoring::labelled};
 use crate::{
     cli::EvaluateArgs,
-    config::{Config, DatasetChoice, Mistakes},
+    config::{Changes, Config, DatasetChoice, Mistakes},
     failure::Failure,
     session::{Session, watch},
 };
@@ -36,7 +36,8 @@ pub fn run(args: &EvaluateArgs) -> Result<(), Failure> {
         folder,
         format: args.format.map(Into::into),
     });
-    let session = Session::open(&args.config, chosen, playback)?;
+    let changes = chosen.map_or_else(Changes::default, Changes::from);
+    let session = Session::open(&args.config, &changes, playback)?;
     let config = session.config.clone();
     let (dataset, truth) = labelled(&config)?.ok_or_else(|| no_dataset(args))?;
     check_classes(args, &truth)?;

@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// # Errors
 /// Mistakes in the configuration.
 pub fn run(args: &ConfigArgs) -> Result<(), Failure> {
-    let session = Session::open(&args.config, None, NOT_PLAYED)?.renamed(&args.ros.read());
+    let session = Session::open(&args.config, &args.ros.read().into(), NOT_PLAYED)?;
     let config = &session.config;
     let surface = &config.node.options.surface;
     for (camera, camera_config) in session

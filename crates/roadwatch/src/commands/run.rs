@@ -4,18 +4,20 @@ use super::{output::say, scoring::Scoring, signals::stop_on_signals};
 use crate::{
     cli::{Pace, RunArgs},
     clock::wall_time,
-    config::DatasetChoice,
+    config::{Changes, DatasetChoice},
     failure::Failure,
-    session::{Session, start_stamp, watch},
+    node::{DaemonNode, RosoutTap},
+    session::{Session, watch},
     status::{self, StatusLine},
 };
 use anyhow::{Context as _, anyhow};
 use roadwatch_camera::{Pace as PlaybackPace, PlaybackOptions, Repeat, Speed};
 use roadwatch_picture::{PictureSink, SCENE_FILE, VIEWS_FILE};
 use roadwatch_pipeline::{Metrics, NamedSink, Overload, PipelineOptions};
-use roadwatch_ros::{BagSink, LogTime, RosSink};
+use roadwatch_ros::{BagSink, LogTime};
 use std::{
     sync::{Arc, atomic::Ordering},
+    thread,
     time::{Duration, Instant},
 };
 
@@ -30,12 +32,22 @@ const STATUS_PERIOD: Duration = Duration::from_secs(1);
 ///
 /// # Errors
 /// Mistakes in the configuration, a bag or node that cannot be made, a bug in a stage.
-pub fn run(args: &RunArgs) -> Result<(), Failure> {
+pub fn run(args: &RunArgs, rosout: &RosoutTap) -> Result<(), Failure> {
     let stop = stop_on_signals()?;
-    let dataset = args.dataset.clone().map(DatasetChoice::from);
-    let session = Session::open(&args.config, dataset, playback(args)?)?;
-    let session = session.renamed(&args.ros.read());
-    let mut sinks = sinks(args, &session)?;
+    let changes = Changes {
+        dataset: args.dataset.clone().map(DatasetChoice::from),
+        ros: args.ros.read(),
+    };
+    let session = Session::open(&args.config, &changes, playback(args)?)?;
+    let mut node = match session.config.node.publish {
+        true => Some(
+            DaemonNode::start(&session, rosout, &stop)
+                .context("the ROS 2 node cannot be started")?,
+        ),
+        false => None,
+    };
+    let stop_requested = || stop.load(Ordering::Relaxed);
+    let mut sinks = sinks(args, &session, node.as_ref())?;
     let scoring = if args.score {
         let scoring = Scoring::prepare(&session)?;
         sinks.push(scoring.sink());
@@ -48,18 +60,24 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
         ..PipelineOptions::new(overload(args.pace))
     };
     let (rig, decodes) = (Arc::clone(&session.rig), session.decodes.clone());
+    if let Some(node) = &node {
+        if session.config.node.autostart {
+            node.autostart();
+        } else {
+            eprintln!("waiting to be configured and activated: ros2 lifecycle set NODE configure");
+            wait_until(|| node.is_active() || stop_requested());
+        }
+    }
     let began = Instant::now();
     let running = session.start(sinks, options)?;
     let mut line = StatusLine::new(rig.cameras().len(), began);
     let report = |running: &roadwatch_pipeline::Running| {
         eprintln!("{}", line.next(&rig, running.metrics(), Instant::now()));
+        if let Some(node) = &mut node {
+            node.report(running.metrics());
+        }
     };
-    watch(
-        &running,
-        STATUS_PERIOD,
-        || stop.load(Ordering::Relaxed),
-        report,
-    )?;
+    watch(&running, STATUS_PERIOD, stop_requested, report)?;
     let took = began.elapsed();
     eprintln!("{}", status::summary(&rig, running.metrics(), took));
     if let Some(scoring) = scoring {
@@ -73,6 +91,14 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
         );
     }
     recording_is_whole(running.metrics())
+}
+
+/// Looks often enough that nobody notices the wait.
+fn wait_until(reached: impl Fn() -> bool) {
+    const LOOK: Duration = Duration::from_millis(50);
+    while !reached() {
+        thread::park_timeout(LOOK);
+    }
 }
 
 fn say_what_was_written(args: &RunArgs) {
@@ -127,12 +153,13 @@ fn playback(args: &RunArgs) -> Result<PlaybackOptions, Failure> {
     })
 }
 
-fn sinks(args: &RunArgs, session: &Session) -> Result<Vec<NamedSink>, Failure> {
+fn sinks(
+    args: &RunArgs,
+    session: &Session,
+    node: Option<&DaemonNode>,
+) -> Result<Vec<NamedSink>, Failure> {
     let mut sinks = Vec::new();
-    let node = &session.config.node;
-    if node.publish {
-        let ros = RosSink::start(Arc::clone(&session.rig), &node.options, start_stamp());
-        let sink = ros.context("the ROS 2 node cannot be started")?;
+    if let Some(sink) = node.and_then(DaemonNode::sink) {
         sinks.push(NamedSink {
             name: "ros2".to_owned(),
             sink: Box::new(sink),
@@ -146,7 +173,7 @@ fn sinks(args: &RunArgs, session: &Session) -> Result<Vec<NamedSink>, Failure> {
         let bag = BagSink::create(
             folder,
             Arc::clone(&session.rig),
-            &node.options.surface,
+            &session.config.node.options.surface,
             log_time,
         );
         let sink = bag.context("nothing can be recorded")?;

@@ -71,7 +71,7 @@ fn detected(
         folder: opened.scene.folder.clone(),
         format: Some(DatasetFormat::Rig),
     };
-    let session = Session::open(config, Some(chosen), playback)?;
+    let session = Session::open(config, &chosen.into(), playback)?;
     let images = opened.dataset.frames().len() as u64;
     eprintln!("detecting in {}", opened.scene.folder.display());
     let (recorded, _) = perceive(session, Progress::new(images, "images"))?;

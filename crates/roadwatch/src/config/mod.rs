@@ -5,7 +5,9 @@ mod camera_lens;
 mod camera_mount;
 pub mod camera_source;
 pub mod cameras;
+mod changes;
 pub mod detector;
+mod diagnostics;
 mod environment;
 pub mod locate;
 mod mistake;
@@ -17,7 +19,9 @@ mod values;
 
 pub use camera_source::SourceConfig;
 pub use cameras::{CameraConfig, DatasetChoice, RigConfig};
+pub use changes::Changes;
 pub use detector::DetectorConfig;
+pub use diagnostics::DiagnosticLimits;
 pub use environment::Environment;
 pub use locate::LocateConfig;
 pub use mistake::{Mistake, Mistakes};
@@ -51,21 +55,25 @@ pub struct Config {
     pub rotation: Option<RotationConfig>,
     /// `[scene] timeout_secs`.
     pub scene_timeout: Duration,
+    /// `[enabled]`: whether each camera, in order of their ids, is looked at from the start.
+    pub enabled: Vec<bool>,
+    /// `[diagnostics]`.
+    pub diagnostics: DiagnosticLimits,
 }
 
 impl Config {
-    /// Reads a file. `dataset` replaces `rig.dataset`.
+    /// Reads a file, with what the command line changes in it.
     ///
     /// # Errors
     /// When the file cannot be read or is not TOML.
     pub fn load(
         file: &Path,
-        dataset: Option<DatasetChoice>,
+        changes: &Changes,
         environment: &Environment,
     ) -> Result<Self, Mistakes> {
         let text = fs::read_to_string(file)
             .map_err(|error| Mistakes::about_file(file, format!("cannot be read: {error}")))?;
-        Self::parse(file, &text, dataset, environment)
+        Self::parse(file, &text, changes, environment)
     }
 
     /// Reads the text of a file.
@@ -75,25 +83,47 @@ impl Config {
     pub fn parse(
         file: &Path,
         text: &str,
-        dataset: Option<DatasetChoice>,
+        changes: &Changes,
         environment: &Environment,
     ) -> Result<Self, Mistakes> {
-        let document = Document::new(file, text, environment);
+        let node_name = changes.node_name(file, text)?;
+        let overrides = changes.overrides(&node_name)?;
+        let document = Document::new(file, (text, &overrides), environment);
         let table = document.parse()?;
         let mut config = read(
             Reader::root(&document, &table),
             Notes::new(file, text, table.get_ref()),
-            dataset,
+            changes.dataset.clone(),
         );
+        let surface = &mut config.node.options.surface;
+        *surface = surface.renamed(&changes.ros);
         config.notes.extend(document.into_mistakes());
         Ok(config)
     }
 }
 
 fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<DatasetChoice>) -> Config {
-    let sections = ["node", "detector", "rig", "locate", "rotation", "scene"];
+    let sections = [
+        "node",
+        "detector",
+        "rig",
+        "locate",
+        "rotation",
+        "scene",
+        "enabled",
+        "diagnostics",
+    ];
     let sections = sections.map(|key| root.table(key));
-    let [node, detector, rig, locate, rotation, scene] = &sections;
+    let [
+        node,
+        detector,
+        rig,
+        locate,
+        rotation,
+        scene,
+        enabled,
+        diagnostics,
+    ] = &sections;
     let camera_tables = root.tables("camera");
     let head = cameras::read_head(rig, dataset);
     let rig_config = cameras::read(rig, &head, &camera_tables);
@@ -108,6 +138,8 @@ fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<DatasetChoice>) -> C
         notes,
         node: node::read(node),
         detector: detector::read(detector),
+        diagnostics: diagnostics::read(diagnostics),
+        enabled: read_enabled(enabled, rig_config.as_ref()),
         rig: rig_config,
         locate: locate::read(locate),
         rotation: rotation::read(rotation),
@@ -121,4 +153,17 @@ fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<DatasetChoice>) -> C
         reader.finish();
     }
     config
+}
+
+/// One answer per camera of the rig; cameras that are not mentioned are looked at.
+fn read_enabled(enabled: &Reader<'_, '_>, rig: Option<&RigConfig>) -> Vec<bool> {
+    let Some(rig) = rig else {
+        // Which cameras there are is unknown, so nothing can be said of their names.
+        enabled.keys();
+        return Vec::new();
+    };
+    let cameras = rig.rig.cameras().iter();
+    cameras
+        .map(|camera| enabled.flag(camera.name.as_str()).unwrap_or(true))
+        .collect()
 }

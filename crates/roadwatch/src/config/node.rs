@@ -2,7 +2,7 @@
 
 use super::reader::Reader;
 use roadwatch_ros::{
-    Network, RosOptions, Surface, ros_sink::MAX_DOMAIN_ID, surface::DEFAULT_QUEUE_DEPTH,
+    Network, PublishOptions, RosOptions, Surface, node::MAX_DOMAIN_ID, surface::DEFAULT_QUEUE_DEPTH,
 };
 
 /// The node as configured.
@@ -12,6 +12,12 @@ pub struct NodeConfig {
     pub options: RosOptions,
     /// Whether anything is published over DDS.
     pub publish: bool,
+    /// What is published, and when.
+    pub publishing: PublishOptions,
+    /// Whether it begins to work by itself, or waits for somebody who manages its lifecycle.
+    pub autostart: bool,
+    /// Whether "now" is what `/clock` says.
+    pub use_sim_time: bool,
 }
 
 pub(super) fn read(node: &Reader<'_, '_>) -> NodeConfig {
@@ -46,6 +52,12 @@ pub(super) fn read(node: &Reader<'_, '_>) -> NodeConfig {
             },
         },
         publish: node.flag("publish").unwrap_or(true),
+        publishing: PublishOptions {
+            tf: node.flag("publish_tf").unwrap_or(true),
+            unread: node.flag("publish_unread").unwrap_or(false),
+        },
+        autostart: node.flag("autostart").unwrap_or(true),
+        use_sim_time: node.flag("use_sim_time").unwrap_or(false),
     }
 }
 

@@ -7,9 +7,10 @@ use super::{
 use crate::msg::{
     builtin_interfaces::Duration,
     geometry_msgs::{Pose, Vector3},
-    std_msgs::ColorRGBA,
+    std_msgs::{ColorRGBA, Header},
     visualization_msgs::{Marker, MarkerArray},
 };
+use roadwatch_core::Timestamp;
 
 /// How long a shape outlives the last message: longer than the slowest camera's interval, short enough
 /// that a viewer does not go on showing objects of a node that is gone.
@@ -31,14 +32,25 @@ const HELD_OPACITY: f32 = 0.25;
 /// A shape is called `<camera>/<shape>` and the number of its track, so that it keeps its name while
 /// the track lives, and cameras that count their tracks alike do not overwrite each other's shapes.
 pub(crate) fn markers(seen: &SeenTogether) -> MarkerArray {
-    let clear = Marker {
-        header: seen.header(),
-        action: Marker::DELETE_ALL,
-        ..Marker::default()
-    };
+    let clear = clear(seen.header());
     let shapes = seen.objects.iter().flat_map(|one| shapes(seen, one));
     MarkerArray {
         markers: std::iter::once(clear).chain(shapes).collect(),
+    }
+}
+
+/// Only the marker that clears the topic.
+pub(crate) fn none(base_frame: &str, stamp: Timestamp) -> MarkerArray {
+    MarkerArray {
+        markers: vec![clear(Header::new(stamp, base_frame))],
+    }
+}
+
+fn clear(header: Header) -> Marker {
+    Marker {
+        header,
+        action: Marker::DELETE_ALL,
+        ..Marker::default()
     }
 }
 

@@ -23,6 +23,13 @@ impl From<Timestamp> for Time {
     }
 }
 
+impl From<Time> for Timestamp {
+    fn from(time: Time) -> Self {
+        let nanos = i64::from(time.sec) * 1_000_000_000 + i64::from(time.nanosec);
+        Self::from_nanos(nanos)
+    }
+}
+
 /// A length of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Duration {

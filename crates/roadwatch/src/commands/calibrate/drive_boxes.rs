@@ -3,7 +3,7 @@
 use crate::{
     cli::{BoxesFrom, CalibrateMountArgs},
     commands::{evaluate::perceive, progress::Progress},
-    config::{Config, Environment, Mistakes},
+    config::{Config, DatasetChoice, Environment, Mistakes},
     failure::Failure,
     session::Session,
 };
@@ -47,10 +47,9 @@ pub(super) fn collect(
     drive: &Path,
     config_file: &Path,
 ) -> Result<DriveBoxes, Failure> {
-    let drive_folder = Some(drive.to_owned());
     let config = Config::load(
         config_file,
-        drive_folder.clone().map(Into::into),
+        &DatasetChoice::from(drive.to_owned()).into(),
         &Environment::of_process(),
     )?;
     config.notes.clone().finish()?;
@@ -142,7 +141,11 @@ fn detected(
         repeat: Repeat::Once,
         frame_limit: args.frames,
     };
-    let session = Session::open(config_file, Some(drive.to_owned().into()), playback)?;
+    let session = Session::open(
+        config_file,
+        &DatasetChoice::from(drive.to_owned()).into(),
+        playback,
+    )?;
     let rig = Arc::clone(&session.rig);
     let sizes = session.config.locate.options.sizes.clone();
     let dataset = session

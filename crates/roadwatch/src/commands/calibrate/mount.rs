@@ -4,7 +4,7 @@ use super::{drive_boxes, mount_report::MountReport, still};
 use crate::{
     cli::{BoxesFrom, CalibrateMountArgs, SolvedPart, TrustedPart},
     commands::output::say,
-    config::{Config, Environment},
+    config::{Changes, Config, Environment},
     failure::Failure,
 };
 use anyhow::{Context as _, anyhow};
@@ -65,7 +65,7 @@ fn camera(args: &CalibrateMountArgs) -> Result<(RigCamera, f64), Failure> {
     let (cameras, ground_z_m) = match (&args.rig, &args.config) {
         (Some(rig), _) => (read_rig_file(rig).map_err(anyhow::Error::from)?, 0.0),
         (None, Some(config)) => {
-            let config = Config::load(config, None, &Environment::of_process())?;
+            let config = Config::load(config, &Changes::default(), &Environment::of_process())?;
             config.notes.clone().finish()?;
             let rig = config.rig.context("the configuration has no rig")?.rig;
             (rig.cameras().to_vec(), rig.ground_z_m)

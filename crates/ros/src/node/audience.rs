@@ -1,0 +1,136 @@
+//! Who listens to what the node publishes.
+
+use rustdds::{
+    DomainParticipant, DomainParticipantStatusEvent as Event, GUID, QosPolicies,
+    policy::{Durability, Reliability},
+};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicUsize, Ordering},
+    },
+};
+
+/// Counts the readers of every topic, as discovery tells of them.
+pub(super) struct Audience {
+    participant: DomainParticipant,
+    known: Mutex<Known>,
+}
+
+#[derive(Default)]
+struct Known {
+    /// Readers of each topic, by the name DDS has for it.
+    topics: BTreeMap<String, Arc<AtomicUsize>>,
+    /// Our endpoints and what ROS calls their topics.
+    endpoints: BTreeMap<GUID, String>,
+    /// Readers and writers that were found not to fit, so that each is told of once.
+    unfit: BTreeSet<GUID>,
+}
+
+impl Audience {
+    pub(super) fn new(participant: DomainParticipant) -> Self {
+        Self {
+            participant,
+            known: Mutex::default(),
+        }
+    }
+
+    /// The number of readers of `topic`, kept up to date. Our endpoint on it is `endpoint`.
+    pub(super) fn of(&self, topic: &str, endpoint: GUID) -> Arc<AtomicUsize> {
+        let readers = {
+            let mut known = self.lock();
+            known.endpoints.insert(endpoint, topic.to_owned());
+            Arc::clone(known.topics.entry(dds_name(topic)).or_default())
+        };
+        self.count();
+        readers
+    }
+
+    /// Our endpoint `endpoint` listens to `topic`.
+    pub(super) fn listens(&self, topic: &str, endpoint: GUID) {
+        self.lock().endpoints.insert(endpoint, topic.to_owned());
+    }
+
+    pub(super) fn hear(&self, event: &Event) {
+        match event {
+            Event::RemoteReaderMatched { .. }
+            | Event::ReaderDetected { .. }
+            | Event::ReaderLost { .. }
+            | Event::ParticipantLost { .. } => self.count(),
+            Event::RemoteReaderQosIncompatible {
+                local_writer,
+                remote_reader,
+                requested_qos,
+                offered_qos,
+            } => {
+                let (ours, theirs) = (*local_writer, *remote_reader);
+                self.warn(ours, theirs, "reader", misfits(requested_qos, offered_qos));
+            }
+            Event::RemoteWriterQosIncompatible {
+                local_reader,
+                remote_writer,
+                requested_qos,
+                offered_qos,
+            } => {
+                let (ours, theirs) = (*local_reader, *remote_writer);
+                self.warn(
+                    ours,
+                    theirs,
+                    "publisher",
+                    misfits(requested_qos, offered_qos),
+                );
+            }
+            _ => {}
+        }
+    }
+
+    fn count(&self) {
+        let readers = self.participant.discovered_readers();
+        let known = self.lock();
+        for (name, count) in &known.topics {
+            let of_topic = |topic: &str| topic == name;
+            let found = readers
+                .iter()
+                .filter(|reader| of_topic(reader.subscription_topic_data.topic_name()));
+            count.store(found.count(), Ordering::Relaxed);
+        }
+    }
+
+    fn warn(&self, ours: GUID, theirs: GUID, what: &str, misfits: String) {
+        let mut known = self.lock();
+        if !known.unfit.insert(theirs) {
+            return;
+        }
+        if let Some(topic) = known.endpoints.get(&ours) {
+            tracing::warn!(%topic, endpoint = ?theirs, "a {what} does not fit and gets nothing: {misfits}");
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Known> {
+        self.known.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// What ROS's topic is called in DDS (ROS 2 design, "Topic and Service name mapping to DDS").
+fn dds_name(topic: &str) -> String {
+    format!("rt{topic}")
+}
+
+/// Where what a reader asks for is more than what a writer offers.
+fn misfits(requested: &QosPolicies, offered: &QosPolicies) -> String {
+    let mut found = Vec::new();
+    let is_reliable =
+        |qos: &QosPolicies| matches!(qos.reliability(), Some(Reliability::Reliable { .. }));
+    if is_reliable(requested) && !is_reliable(offered) {
+        found.push("the reader asks for reliable, the writer offers best effort");
+    }
+    let keeps = |qos: &QosPolicies| qos.durability().unwrap_or(Durability::Volatile);
+    if keeps(requested) > keeps(offered) {
+        found.push("the reader asks for transient local, the writer offers volatile");
+    }
+    if found.is_empty() {
+        found.push("deadline, liveliness, ownership or order of delivery differ");
+    }
+    found.join("; ")
+}
