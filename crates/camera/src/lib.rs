@@ -16,6 +16,7 @@ mod mat;
 mod natural_order;
 pub mod playback;
 pub mod player;
+pub mod raw_image;
 pub mod rig_dataset;
 pub mod span;
 pub mod still_image;
@@ -30,6 +31,7 @@ pub use image_sequence::{ImageSequence, SequenceError, StampedFile};
 pub use live_camera::{LiveCamera, LiveCameraError};
 pub use playback::{Due, Pace, Playback, PlaybackOptions, Repeat, Speed};
 pub use player::{Player, Recording};
+pub use raw_image::RawImage;
 pub use rig_dataset::{
     DatasetError, DatasetFrame, DatasetImage, FramesProblem, RigDataset, RigProblem, read_rig_file,
 };

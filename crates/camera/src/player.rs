@@ -33,6 +33,24 @@ pub trait Recording: Send {
     fn rewind(&mut self) -> Result<(), SourceError>;
 }
 
+impl Recording for Box<dyn Recording> {
+    fn span(&self) -> Span {
+        self.as_ref().span()
+    }
+
+    fn next_stamp(&mut self) -> Result<Option<Timestamp>, SourceError> {
+        self.as_mut().next_stamp()
+    }
+
+    fn take_image(&mut self) -> Result<Image, SourceError> {
+        self.as_mut().take_image()
+    }
+
+    fn rewind(&mut self) -> Result<(), SourceError> {
+        self.as_mut().rewind()
+    }
+}
+
 /// A recording as one camera of the rig.
 #[derive(Debug)]
 pub struct Player<R> {

@@ -25,6 +25,12 @@ pub enum DrawError {
     /// The image of a camera is not there.
     #[error("an image cannot be decoded: {0}")]
     Decode(#[from] roadwatch_core::DecodeError),
+    /// Whatever is seen is larger.
+    #[error("no picture of {most_bytes} bytes shows anything")]
+    TooLarge {
+        /// What was asked for.
+        most_bytes: usize,
+    },
     /// The file cannot be written.
     #[error("cannot write the picture `{}`", .0.display())]
     Unwritable(PathBuf),
@@ -39,6 +45,10 @@ pub struct Canvas {
 pub(crate) type At = (f64, f64);
 
 impl Canvas {
+    pub(crate) fn mat(&self) -> &Mat {
+        &self.mat
+    }
+
     /// An empty picture of one colour, blue green red.
     ///
     /// # Errors

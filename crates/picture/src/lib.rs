@@ -7,6 +7,7 @@ mod camera_view;
 mod canvas;
 mod contact_sheet;
 mod cuboid;
+mod jpeg;
 mod palette;
 mod picture_sink;
 mod scene_view;

@@ -147,7 +147,11 @@ impl Reidentifier for LeftToRight {
         let ground = self.ground.at(captured_at);
         let prior = |detection: &Detection, place: usize| {
             let before = self.remembered(camera, place, &detection.class)?;
-            let measured = before.location.as_ref()?;
+            // A recording that begins anew takes time back: what is still to come is no memory.
+            let measured = before
+                .location
+                .as_ref()
+                .filter(|known| known.at <= captured_at)?;
             // From frame to frame an object's boxes overlap; where they do not, the row has moved on.
             let is_there = before.box_px.iou(&detection.box_px) > 0.0;
             let heading = before.heading.filter(|_| is_there);

@@ -1,5 +1,6 @@
 //! The daemon as a ROS 2 node: what it offers beside its topics, and what "now" is to it.
 
+mod annotated;
 mod diagnostics;
 mod log;
 mod parameters;
@@ -22,6 +23,7 @@ use std::{
     },
 };
 
+pub use annotated::AnnotatedImages;
 pub use log::RosoutTap;
 
 /// The node while it runs. It leaves the domain when it is dropped.
@@ -99,6 +101,18 @@ impl DaemonNode {
     #[must_use]
     pub fn sink(&self) -> Option<RosSink> {
         self.outlets.clone().map(RosSink)
+    }
+
+    /// Where annotated images are published; `None` when none are.
+    ///
+    /// # Errors
+    /// When the middleware refuses.
+    pub fn annotated_images(&self, session: &Session) -> Result<Option<AnnotatedImages>, RosError> {
+        let config = &session.config.node;
+        if !config.publish || !config.annotated_images {
+            return Ok(None);
+        }
+        AnnotatedImages::announce(&self.node, Arc::clone(&session.rig)).map(Some)
     }
 
     /// Configured and active at once, where nobody is to manage it.

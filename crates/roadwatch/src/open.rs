@@ -1,13 +1,10 @@
 //! From configuration to the parts of a pipeline: everything that can fail at start fails here.
 
-use crate::config::{
-    CameraConfig, Config, DetectorConfig, Notes, RigConfig, RotationConfig, SourceConfig,
-};
-use roadwatch_camera::{
-    AnyRecording, DecodeCount, ImageSequence, Playback, PlaybackOptions, Player, Recording,
-    RigDataset, Span, VideoFile,
-};
-use roadwatch_core::{FrameSource, Locator, Rig, RigCamera, Timestamp, error_chain};
+mod ros_images;
+mod sources;
+
+use crate::config::{Config, DetectorConfig, Notes, RigConfig, RotationConfig};
+use roadwatch_core::{Locator, Rig, error_chain};
 use roadwatch_detect::{DetectorError, NetworkError, Runtime, YoloDetector};
 use roadwatch_onnx::SessionOptions;
 use roadwatch_pipeline::perceive::Rotating;
@@ -18,8 +15,8 @@ use roadwatch_rotate::{
 use std::sync::{Arc, atomic::AtomicUsize};
 
 const CURVE_KEY: &str = "rotation.position_curve";
-/// Beginning of a rig without any stamp: one second, as tf takes zero for "latest".
-const UNSTAMPED_START: Timestamp = Timestamp::from_nanos(1_000_000_000);
+
+pub use sources::{Feed, sources};
 
 /// Opens the model, or notes why not.
 pub fn detector(config: &Config, notes: &mut Notes) -> Option<YoloDetector> {
@@ -161,112 +158,6 @@ fn model_key(error: &ComponentModelError) -> &'static str {
         }
         ComponentModelError::Unreadable { .. } | ComponentModelError::NotAHead { .. } => {
             "rotation.model"
-        }
-    }
-}
-
-/// Opens what feeds each camera, or notes why not. `decodes` counts the images that are decoded.
-pub fn sources(
-    config: &Config,
-    playback: PlaybackOptions,
-    decodes: &DecodeCount,
-    notes: &mut Notes,
-) -> Option<Vec<Box<dyn FrameSource>>> {
-    let RigConfig {
-        rig,
-        cameras,
-        dataset,
-        ..
-    } = config.rig.as_ref()?;
-    let start = default_start(cameras, dataset.as_deref());
-    let opened: Vec<Option<AnyRecording>> = rig
-        .cameras()
-        .iter()
-        .zip(cameras)
-        .map(|(camera, config)| {
-            match open_source(camera, config, dataset.as_deref(), (start, decodes)) {
-                Ok(opened) => Some(opened),
-                Err((key, what)) => {
-                    notes.note(&format!("{}.{key}", config.key), what);
-                    None
-                }
-            }
-        })
-        .collect();
-    let opened: Vec<AnyRecording> = opened.into_iter().collect::<Option<_>>()?;
-    let spans: Vec<_> = opened.iter().map(Recording::span).collect();
-    note_lonely(cameras, &spans, notes);
-    let playback = Playback::new(playback, &spans);
-    let players = rig.ids().zip(opened).map(|(camera, recording)| {
-        Box::new(Player::new(camera, recording, Arc::clone(&playback))) as Box<dyn FrameSource>
-    });
-    Some(players.collect())
-}
-
-/// Where recordings without a start stamp begin: with the dataset, or with the earliest that has one.
-fn default_start(cameras: &[CameraConfig], dataset: Option<&RigDataset>) -> Timestamp {
-    let of_dataset = dataset
-        .and_then(|dataset| dataset.frames().first())
-        .into_iter();
-    let of_dataset = of_dataset.flat_map(|frame| frame.stamps.iter().flatten().copied());
-    let of_cameras = cameras.iter().filter_map(|camera| match camera.source {
-        SourceConfig::Images { start, .. } | SourceConfig::Video { start, .. } => start,
-        SourceConfig::Dataset(_) => None,
-    });
-    of_dataset
-        .chain(of_cameras)
-        .min()
-        .unwrap_or(UNSTAMPED_START)
-}
-
-/// Notes recordings that share no moment with another: played together, one would wait for the other for
-/// as long as lies between them.
-fn note_lonely(cameras: &[CameraConfig], spans: &[Span], notes: &mut Notes) {
-    let meets = |a: &Span, b: &Span| a.first <= b.last && b.first <= a.last;
-    let first = spans.iter().min_by_key(|span| span.first);
-    for (camera, span) in cameras.iter().zip(spans) {
-        if first.is_some_and(|first| !meets(first, span)) {
-            let what = "this recording begins after another of the rig has ended; give both matching start stamps";
-            notes.note(&start_key(camera), what);
-        }
-    }
-}
-
-/// The key that says when a camera's recording begins.
-fn start_key(camera: &CameraConfig) -> String {
-    match camera.source {
-        SourceConfig::Dataset(_) => camera.key.clone(),
-        SourceConfig::Images { .. } | SourceConfig::Video { .. } => {
-            format!("{}.start_stamp", camera.key)
-        }
-    }
-}
-
-fn open_source(
-    camera: &RigCamera,
-    config: &CameraConfig,
-    dataset: Option<&RigDataset>,
-    (default_start, decodes): (Timestamp, &DecodeCount),
-) -> Result<AnyRecording, (&'static str, String)> {
-    let size = camera.model.size;
-    match &config.source {
-        SourceConfig::Dataset(index) => dataset
-            .and_then(|dataset| dataset.recording(*index))
-            .ok_or_else(|| "the dataset has no images of this camera".to_owned())
-            .and_then(|opened| opened.map_err(|error| error_chain(&error)))
-            .map(|recording| recording.counting(decodes.clone()))
-            .map_err(|what| ("dataset", what)),
-        SourceConfig::Images {
-            folder,
-            rate,
-            start,
-        } => ImageSequence::open(folder, size, *rate, start.unwrap_or(default_start))
-            .map(|images| AnyRecording::Images(images.counting(decodes.clone())))
-            .map_err(|error| ("images", error_chain(&error))),
-        SourceConfig::Video { file, start } => {
-            VideoFile::open(file, size, start.unwrap_or(default_start))
-                .map(AnyRecording::Video)
-                .map_err(|error| ("video", error_chain(&error)))
         }
     }
 }

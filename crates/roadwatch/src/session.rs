@@ -4,12 +4,12 @@ use crate::{
     clock::SystemClock,
     config::{Changes, Config, Environment, Mistakes},
     failure::Failure,
-    open,
+    open::{self, Feed},
     switches::Switches,
 };
 use anyhow::Context as _;
 use roadwatch_camera::{DecodeCount, PlaybackOptions};
-use roadwatch_core::{FrameSource, Locator, Rig};
+use roadwatch_core::{Locator, Rig};
 use roadwatch_detect::YoloDetector;
 use roadwatch_pipeline::{
     NamedSink, Outcome, PipelineOptions, Running, Stages,
@@ -17,6 +17,7 @@ use roadwatch_pipeline::{
     start,
 };
 use roadwatch_reid::LeftToRight;
+use roadwatch_ros::{RosError, RosNode};
 use std::{
     sync::{Arc, atomic::AtomicUsize},
     time::{Duration, Instant},
@@ -35,7 +36,7 @@ pub struct Session {
     pub decodes: DecodeCount,
     /// What can be changed while it runs.
     pub controls: Controls,
-    sources: Vec<Box<dyn FrameSource>>,
+    feeds: Vec<Feed>,
     detector: Arc<YoloDetector>,
     locators: Vec<Box<dyn Locator>>,
     rotation: Option<Rotating>,
@@ -68,11 +69,11 @@ impl Session {
         let detector = open::detector(&config, &mut notes);
         let locators = open::locators(&config, &mut notes);
         let rotation = open::rotation(&config, &mut notes);
-        let sources = open::sources(&config, playback, &decodes, &mut notes);
+        let feeds = open::sources(&config, playback, &decodes, &mut notes);
         let rig = open::shared_rig(&config);
         notes.finish()?;
-        match (rig, sources, detector, locators, rotation) {
-            (Some(rig), Some(sources), Some(detector), Some(locators), Ok(rotation)) => {
+        match (rig, feeds, detector, locators, rotation) {
+            (Some(rig), Some(feeds), Some(detector), Some(locators), Ok(rotation)) => {
                 let detector = Arc::new(detector);
                 let controls = Controls {
                     detector: Arc::clone(&detector),
@@ -84,7 +85,7 @@ impl Session {
                     rig,
                     decodes,
                     controls,
-                    sources,
+                    feeds,
                     detector,
                     locators,
                     rotation,
@@ -94,17 +95,43 @@ impl Session {
         }
     }
 
+    /// Whether topics feed cameras.
+    #[must_use]
+    pub fn has_topics(&self) -> bool {
+        let is_topic = |feed: &Feed| matches!(feed, Feed::Topic { .. });
+        self.feeds.iter().any(is_topic)
+    }
+
+    /// With those cameras listening that topics feed.
+    ///
+    /// # Errors
+    /// When the middleware refuses.
+    pub fn listening(mut self, node: &RosNode) -> Result<Self, RosError> {
+        let feeds = self.feeds.into_iter().map(|feed| feed.listening(node));
+        self.feeds = feeds.collect::<Result<_, _>>()?;
+        Ok(self)
+    }
+
     /// Starts the pipeline.
     ///
     /// # Errors
-    /// When the system gives no thread.
+    /// When a camera is fed by a topic and nobody listens, or the system gives no thread.
     pub fn start(
         self,
         sinks: Vec<NamedSink>,
         options: PipelineOptions,
     ) -> Result<Running, Failure> {
+        let sources = self.feeds.into_iter().map(|feed| match feed {
+            Feed::Playing(source) => Ok(source),
+            Feed::Topic { camera, .. } => Err(anyhow::anyhow!(
+                "{} is fed by the topic {}, and only a running node can listen to it in real time",
+                camera.camera.name,
+                camera.images
+            )),
+        });
+        let sources = sources.collect::<Result<Vec<_>, _>>()?;
         let stages = Stages {
-            sources: self.controls.switches.put_before(self.sources),
+            sources: self.controls.switches.put_before(sources),
             detector: self.detector,
             perceiver: Perceiver {
                 locators: self.locators,

@@ -1,7 +1,8 @@
 //! Messages as bytes: CDR, little endian, behind the four-byte header that names the encoding.
 
 use crate::convert::Message;
-use byteorder::LittleEndian;
+use byteorder::{BigEndian, LittleEndian};
+use serde::de::DeserializeOwned;
 
 /// `CDR_LE` and no options, as every ROS 2 middleware begins a sample.
 const ENCAPSULATION: [u8; 4] = [0x00, 0x01, 0x00, 0x00];
@@ -20,6 +21,33 @@ pub fn encode(message: &Message) -> Result<Vec<u8>, EncodeError> {
     // Alignment counts from behind the header, so the body is written on its own.
     bytes.extend(cdr_encoding::to_vec::<Message, LittleEndian>(message)?);
     Ok(bytes)
+}
+
+/// Bytes that are no such message.
+#[derive(Debug, thiserror::Error)]
+pub enum DecodeError {
+    /// Not in CDR, or with options that ROS does not use.
+    #[error("the message is not in plain CDR")]
+    Encapsulation,
+    /// Cut short, or of another type.
+    #[error("the message is damaged: {0}")]
+    Damaged(#[from] cdr_encoding::Error),
+}
+
+/// A message from the form in which DDS carries it and bags store it, in either order of bytes.
+///
+/// # Errors
+/// When the bytes are not such a message.
+pub fn decode<M: DeserializeOwned>(bytes: &[u8]) -> Result<M, DecodeError> {
+    let (header, body) = bytes
+        .split_at_checked(ENCAPSULATION.len())
+        .ok_or(DecodeError::Encapsulation)?;
+    let (message, _) = match header[..2] {
+        [0, 0] => cdr_encoding::from_bytes::<M, BigEndian>(body)?,
+        [0, 1] => cdr_encoding::from_bytes::<M, LittleEndian>(body)?,
+        _ => return Err(DecodeError::Encapsulation),
+    };
+    Ok(message)
 }
 
 #[cfg(test)]

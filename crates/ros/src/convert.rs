@@ -23,6 +23,8 @@ use seen::SeenTogether;
 use serde::Serialize;
 use std::{ops::Range, sync::Arc};
 
+#[cfg(test)]
+pub(crate) use calibration::camera_info;
 pub use markers::MARKER_LIFETIME;
 pub use pose::{UPRIGHT_VARIANCE_RAD2, YAW_UNKNOWN_VARIANCE_RAD2};
 

@@ -7,6 +7,7 @@ pub mod bag;
 pub mod cdr;
 pub mod convert;
 pub mod definitions;
+pub mod input;
 pub mod lifecycle;
 pub mod msg;
 pub mod node;
@@ -24,6 +25,7 @@ mod testing;
 
 pub use bag::{BagError, BagSink, LogTime};
 pub use convert::{Message, Messages, Outgoing};
+pub use input::{BagImages, ImageMessage, ImageTopic, TopicCamera};
 pub use lifecycle::Lifecycle;
 pub use node::{Network, Outlet, RosError, RosNode, RosOptions, Service};
 pub use parameters::{Parameter, ParameterValue, Parameters};

@@ -130,6 +130,12 @@ impl Surface {
     }
 }
 
+/// Name of the topic with a camera's annotated images.
+#[must_use]
+pub fn annotated_topic(surface: &Surface, camera: &str) -> String {
+    surface.topic(&format!("~/{camera}/image_annotated/compressed"))
+}
+
 pub(crate) fn is_token(text: &str) -> bool {
     let legal = |c: char| c.is_ascii_alphanumeric() || c == '_';
     !text.is_empty()

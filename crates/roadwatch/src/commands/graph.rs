@@ -4,7 +4,7 @@ use super::check::NOT_PLAYED;
 use super::output::say;
 use crate::{cli::ConfigArgs, failure::Failure, session::Session};
 use roadwatch_pipeline::{DETECTED_QUEUE_LEN, LANES};
-use roadwatch_ros::Messages;
+use roadwatch_ros::{Messages, surface::annotated_topic};
 use std::sync::Arc;
 
 /// Prints the flow of a configuration: sources, stages, queues, topics.
@@ -48,6 +48,12 @@ pub fn run(args: &ConfigArgs) -> Result<(), Failure> {
     );
     for topic in messages.topics() {
         say!("         {:<48} {}", topic.name, topic.kind.ros_type());
+    }
+    if config.node.annotated_images {
+        for camera in session.rig.cameras() {
+            let topic = annotated_topic(surface, camera.name.as_str());
+            say!("         {topic:<48} sensor_msgs/CompressedImage");
+        }
     }
     Ok(())
 }

@@ -12,11 +12,15 @@ use crate::{
 };
 use anyhow::{Context as _, anyhow};
 use roadwatch_camera::{Pace as PlaybackPace, PlaybackOptions, Repeat, Speed};
+use roadwatch_core::Sink;
 use roadwatch_picture::{PictureSink, SCENE_FILE, VIEWS_FILE};
 use roadwatch_pipeline::{Metrics, NamedSink, Overload, PipelineOptions};
 use roadwatch_ros::{BagSink, LogTime};
 use std::{
-    sync::{Arc, atomic::Ordering},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
     thread,
     time::{Duration, Instant},
 };
@@ -39,13 +43,7 @@ pub fn run(args: &RunArgs, rosout: &RosoutTap) -> Result<(), Failure> {
         ros: args.ros.read(),
     };
     let session = Session::open(&args.config, &changes, playback(args)?)?;
-    let mut node = match session.config.node.publish {
-        true => Some(
-            DaemonNode::start(&session, rosout, &stop)
-                .context("the ROS 2 node cannot be started")?,
-        ),
-        false => None,
-    };
+    let mut node = start_node(args, &session, rosout, &stop)?;
     let stop_requested = || stop.load(Ordering::Relaxed);
     let mut sinks = sinks(args, &session, node.as_ref())?;
     let scoring = if args.score {
@@ -60,13 +58,15 @@ pub fn run(args: &RunArgs, rosout: &RosoutTap) -> Result<(), Failure> {
         ..PipelineOptions::new(overload(args.pace))
     };
     let (rig, decodes) = (Arc::clone(&session.rig), session.decodes.clone());
-    if let Some(node) = &node {
-        if session.config.node.autostart {
-            node.autostart();
-        } else {
-            eprintln!("waiting to be configured and activated: ros2 lifecycle set NODE configure");
-            wait_until(|| node.is_active() || stop_requested());
+    let session = match &node {
+        Some(node) => {
+            let listening = session.listening(node.node());
+            listening.context("the cameras' topics cannot be listened to")?
         }
+        None => session,
+    };
+    if let Some(node) = &node {
+        hold_back(node, session.config.node.autostart, stop_requested);
     }
     let began = Instant::now();
     let running = session.start(sinks, options)?;
@@ -93,10 +93,35 @@ pub fn run(args: &RunArgs, rosout: &RosoutTap) -> Result<(), Failure> {
     recording_is_whole(running.metrics())
 }
 
-/// Looks often enough that nobody notices the wait.
-fn wait_until(reached: impl Fn() -> bool) {
+/// The node, where something is published or a topic feeds a camera.
+fn start_node(
+    args: &RunArgs,
+    session: &Session,
+    rosout: &RosoutTap,
+    stop: &Arc<AtomicBool>,
+) -> Result<Option<DaemonNode>, Failure> {
+    let listens = session.has_topics();
+    if listens && args.pace == Pace::Lossless {
+        let what = anyhow!("topics do not wait: cameras that they feed run at --pace realtime");
+        return Err(what.into());
+    }
+    if !listens && !session.config.node.publish {
+        return Ok(None);
+    }
+    let started = DaemonNode::start(session, rosout, stop);
+    Ok(Some(started.context("the ROS 2 node cannot be started")?))
+}
+
+/// Returns when the node is active, or shall not be any more.
+fn hold_back(node: &DaemonNode, autostart: bool, stop_requested: impl Fn() -> bool) {
+    /// Often enough that nobody notices the wait.
     const LOOK: Duration = Duration::from_millis(50);
-    while !reached() {
+    if autostart {
+        node.autostart();
+        return;
+    }
+    eprintln!("waiting to be configured and activated (node.autostart is false)");
+    while !node.is_active() && !stop_requested() {
         thread::park_timeout(LOOK);
     }
 }
@@ -159,11 +184,20 @@ fn sinks(
     node: Option<&DaemonNode>,
 ) -> Result<Vec<NamedSink>, Failure> {
     let mut sinks = Vec::new();
-    if let Some(sink) = node.and_then(DaemonNode::sink) {
+    let mut add = |name: &str, sink: Box<dyn Sink>| {
         sinks.push(NamedSink {
-            name: "ros2".to_owned(),
-            sink: Box::new(sink),
+            name: name.to_owned(),
+            sink,
         });
+    };
+    if let Some(node) = node {
+        if let Some(sink) = node.sink() {
+            add("ros2", Box::new(sink));
+        }
+        let annotated = node.annotated_images(session);
+        if let Some(sink) = annotated.context("no annotated images can be published")? {
+            add("annotated", Box::new(sink));
+        }
     }
     if let Some(folder) = &args.bag {
         let log_time = match args.pace {
@@ -176,20 +210,13 @@ fn sinks(
             &session.config.node.options.surface,
             log_time,
         );
-        let sink = bag.context("nothing can be recorded")?;
-        sinks.push(NamedSink {
-            name: BAG.to_owned(),
-            sink: Box::new(sink),
-        });
+        add(BAG, Box::new(bag.context("nothing can be recorded")?));
     }
     if let Some(folder) = &args.pictures {
         let sink = PictureSink::create(folder, Arc::clone(&session.rig));
         let sink =
             sink.with_context(|| format!("no pictures can be put into `{}`", folder.display()))?;
-        sinks.push(NamedSink {
-            name: PICTURES.to_owned(),
-            sink: Box::new(sink),
-        });
+        add(PICTURES, Box::new(sink));
     }
     Ok(sinks)
 }

@@ -14,6 +14,8 @@ pub struct NodeConfig {
     pub publish: bool,
     /// What is published, and when.
     pub publishing: PublishOptions,
+    /// Whether annotated images are offered.
+    pub annotated_images: bool,
     /// Whether it begins to work by itself, or waits for somebody who manages its lifecycle.
     pub autostart: bool,
     /// Whether "now" is what `/clock` says.
@@ -56,6 +58,7 @@ pub(super) fn read(node: &Reader<'_, '_>) -> NodeConfig {
             tf: node.flag("publish_tf").unwrap_or(true),
             unread: node.flag("publish_unread").unwrap_or(false),
         },
+        annotated_images: node.flag("annotated_images").unwrap_or(true),
         autostart: node.flag("autostart").unwrap_or(true),
         use_sim_time: node.flag("use_sim_time").unwrap_or(false),
     }

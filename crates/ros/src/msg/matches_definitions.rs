@@ -89,6 +89,7 @@ fn as_ros(format: &Format) -> Option<(String, Count)> {
         Format::F64 => one("float64"),
         Format::Str => one("string"),
         Format::TypeName(name) => one(name),
+        Format::Bytes => Some(("uint8".to_owned(), Count::Any)),
         Format::Seq(inner) => match as_ros(inner)? {
             (name, Count::One) => Some((name, Count::Any)),
             _ => None,

@@ -53,5 +53,26 @@ pub struct CompressedImage {
     /// `jpeg`, `png`.
     pub format: String,
     /// The encoded bytes.
+    #[serde(with = "serde_bytes")]
+    pub data: Vec<u8>,
+}
+
+/// An image that is not encoded.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Image {
+    /// Capture time, optical frame.
+    pub header: Header,
+    /// Rows.
+    pub height: u32,
+    /// Columns.
+    pub width: u32,
+    /// What the bytes mean: `rgb8`, `bgr8`, `mono8`, `bayer_rggb8`, …
+    pub encoding: String,
+    /// Whether the higher byte of a number comes first.
+    pub is_bigendian: u8,
+    /// Bytes from one row to the next.
+    pub step: u32,
+    /// The rows.
+    #[serde(with = "serde_bytes")]
     pub data: Vec<u8>,
 }
