@@ -15,27 +15,17 @@ messages or `--seconds` have passed, and prints one JSON line per topic:
 
 import argparse
 import json
-import os
 import time
 
-LOOPBACK = """
-<CycloneDDS><Domain Id="any">
-  <General><Interfaces><NetworkInterface name="lo" multicast="false"/></Interfaces>
-    <AllowMulticast>false</AllowMulticast></General>
-  <Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>120</MaxAutoParticipantIndex>
-    <Peers><Peer address="127.0.0.1"/></Peers></Discovery>
-</Domain></CycloneDDS>
-"""
-# Read when the first participant is made, so it must stand before the import.
-os.environ["CYCLONEDDS_URI"] = LOOPBACK
+import loopback  # noqa: F401  (before cyclonedds)
 
-from cyclonedds.core import Policy, Qos  # noqa: E402
-from cyclonedds.domain import DomainParticipant  # noqa: E402
-from cyclonedds.sub import DataReader  # noqa: E402
-from cyclonedds.topic import Topic  # noqa: E402
-from cyclonedds.util import duration  # noqa: E402
+from cyclonedds.core import Policy, Qos
+from cyclonedds.domain import DomainParticipant
+from cyclonedds.sub import DataReader
+from cyclonedds.topic import Topic
+from cyclonedds.util import duration
 
-import ros_idl  # noqa: E402
+import ros_idl
 
 LISTS = ("objects", "detections", "markers", "transforms")
 POLL_SECONDS = 0.01

@@ -1,10 +1,23 @@
-"""The published ROS 2 messages as CycloneDDS types, with the type names that ROS 2 puts on the wire."""
+"""ROS 2 messages as CycloneDDS types, with the type names that ROS 2 puts on the wire.
+
+Services are their two messages, without what a middleware puts in front of them.
+"""
 
 from dataclasses import dataclass
 
 from cyclonedds.idl import IdlStruct
 from cyclonedds.idl.annotations import final
-from cyclonedds.idl.types import array, float32, float64, int32, sequence, uint8, uint32, uint64
+from cyclonedds.idl.types import (
+    array,
+    float32,
+    float64,
+    int32,
+    int64,
+    sequence,
+    uint8,
+    uint32,
+    uint64,
+)
 
 
 @dataclass
@@ -121,6 +134,18 @@ class CameraInfo(IdlStruct, typename="sensor_msgs::msg::dds_::CameraInfo_"):
     binning_x: uint32
     binning_y: uint32
     roi: RegionOfInterest
+
+
+@dataclass
+@final
+class Image(IdlStruct, typename="sensor_msgs::msg::dds_::Image_"):
+    header: Header
+    height: uint32
+    width: uint32
+    encoding: str
+    is_bigendian: uint8
+    step: uint32
+    data: sequence[uint8]
 
 
 @dataclass
@@ -291,6 +316,329 @@ class ObjectArray(IdlStruct, typename="roadwatch_msgs::msg::dds_::ObjectArray_")
     header: Header
     camera: str
     objects: sequence[Object]
+
+
+@dataclass
+@final
+class Clock(IdlStruct, typename="rosgraph_msgs::msg::dds_::Clock_"):
+    clock: Time
+
+
+@dataclass
+@final
+class KeyValue(IdlStruct, typename="diagnostic_msgs::msg::dds_::KeyValue_"):
+    key: str
+    value: str
+
+
+@dataclass
+@final
+class DiagnosticStatus(IdlStruct, typename="diagnostic_msgs::msg::dds_::DiagnosticStatus_"):
+    level: uint8
+    name: str
+    message: str
+    hardware_id: str
+    values: sequence[KeyValue]
+
+
+@dataclass
+@final
+class DiagnosticArray(IdlStruct, typename="diagnostic_msgs::msg::dds_::DiagnosticArray_"):
+    header: Header
+    status: sequence[DiagnosticStatus]
+
+
+@dataclass
+@final
+class Log(IdlStruct, typename="rcl_interfaces::msg::dds_::Log_"):
+    stamp: Time
+    level: uint8
+    name: str
+    msg: str
+    file: str
+    function: str
+    line: uint32
+
+
+@dataclass
+@final
+class ParameterValue(IdlStruct, typename="rcl_interfaces::msg::dds_::ParameterValue_"):
+    type: uint8
+    bool_value: bool
+    integer_value: int64
+    double_value: float64
+    string_value: str
+    byte_array_value: sequence[uint8]
+    bool_array_value: sequence[bool]
+    integer_array_value: sequence[int64]
+    double_array_value: sequence[float64]
+    string_array_value: sequence[str]
+
+
+@dataclass
+@final
+class Parameter(IdlStruct, typename="rcl_interfaces::msg::dds_::Parameter_"):
+    name: str
+    value: ParameterValue
+
+
+@dataclass
+@final
+class ParameterEvent(IdlStruct, typename="rcl_interfaces::msg::dds_::ParameterEvent_"):
+    stamp: Time
+    node: str
+    new_parameters: sequence[Parameter]
+    changed_parameters: sequence[Parameter]
+    deleted_parameters: sequence[Parameter]
+
+
+@dataclass
+@final
+class FloatingPointRange(IdlStruct, typename="rcl_interfaces::msg::dds_::FloatingPointRange_"):
+    from_value: float64
+    to_value: float64
+    step: float64
+
+
+@dataclass
+@final
+class IntegerRange(IdlStruct, typename="rcl_interfaces::msg::dds_::IntegerRange_"):
+    from_value: int64
+    to_value: int64
+    step: uint64
+
+
+@dataclass
+@final
+class ParameterDescriptor(IdlStruct, typename="rcl_interfaces::msg::dds_::ParameterDescriptor_"):
+    name: str
+    type: uint8
+    description: str
+    additional_constraints: str
+    read_only: bool
+    dynamic_typing: bool
+    floating_point_range: sequence[FloatingPointRange, 1]
+    integer_range: sequence[IntegerRange, 1]
+
+
+@dataclass
+@final
+class ListParametersResult(IdlStruct, typename="rcl_interfaces::msg::dds_::ListParametersResult_"):
+    names: sequence[str]
+    prefixes: sequence[str]
+
+
+@dataclass
+@final
+class SetParametersResult(IdlStruct, typename="rcl_interfaces::msg::dds_::SetParametersResult_"):
+    successful: bool
+    reason: str
+
+
+@dataclass
+@final
+class ListParametersRequest(
+    IdlStruct, typename="rcl_interfaces::srv::dds_::ListParameters_Request_"
+):
+    prefixes: sequence[str]
+    depth: uint64
+
+
+@dataclass
+@final
+class ListParametersResponse(
+    IdlStruct, typename="rcl_interfaces::srv::dds_::ListParameters_Response_"
+):
+    result: ListParametersResult
+
+
+@dataclass
+@final
+class GetParametersRequest(IdlStruct, typename="rcl_interfaces::srv::dds_::GetParameters_Request_"):
+    names: sequence[str]
+
+
+@dataclass
+@final
+class GetParametersResponse(
+    IdlStruct, typename="rcl_interfaces::srv::dds_::GetParameters_Response_"
+):
+    values: sequence[ParameterValue]
+
+
+@dataclass
+@final
+class GetParameterTypesRequest(
+    IdlStruct, typename="rcl_interfaces::srv::dds_::GetParameterTypes_Request_"
+):
+    names: sequence[str]
+
+
+@dataclass
+@final
+class GetParameterTypesResponse(
+    IdlStruct, typename="rcl_interfaces::srv::dds_::GetParameterTypes_Response_"
+):
+    types: sequence[uint8]
+
+
+@dataclass
+@final
+class DescribeParametersRequest(
+    IdlStruct, typename="rcl_interfaces::srv::dds_::DescribeParameters_Request_"
+):
+    names: sequence[str]
+
+
+@dataclass
+@final
+class DescribeParametersResponse(
+    IdlStruct, typename="rcl_interfaces::srv::dds_::DescribeParameters_Response_"
+):
+    descriptors: sequence[ParameterDescriptor]
+
+
+@dataclass
+@final
+class SetParametersRequest(IdlStruct, typename="rcl_interfaces::srv::dds_::SetParameters_Request_"):
+    parameters: sequence[Parameter]
+
+
+@dataclass
+@final
+class SetParametersResponse(
+    IdlStruct, typename="rcl_interfaces::srv::dds_::SetParameters_Response_"
+):
+    results: sequence[SetParametersResult]
+
+
+@dataclass
+@final
+class SetParametersAtomicallyRequest(
+    IdlStruct, typename="rcl_interfaces::srv::dds_::SetParametersAtomically_Request_"
+):
+    parameters: sequence[Parameter]
+
+
+@dataclass
+@final
+class SetParametersAtomicallyResponse(
+    IdlStruct, typename="rcl_interfaces::srv::dds_::SetParametersAtomically_Response_"
+):
+    result: SetParametersResult
+
+
+@dataclass
+@final
+class State(IdlStruct, typename="lifecycle_msgs::msg::dds_::State_"):
+    id: uint8
+    label: str
+
+
+@dataclass
+@final
+class Transition(IdlStruct, typename="lifecycle_msgs::msg::dds_::Transition_"):
+    id: uint8
+    label: str
+
+
+@dataclass
+@final
+class TransitionDescription(
+    IdlStruct, typename="lifecycle_msgs::msg::dds_::TransitionDescription_"
+):
+    transition: Transition
+    start_state: State
+    goal_state: State
+
+
+@dataclass
+@final
+class TransitionEvent(IdlStruct, typename="lifecycle_msgs::msg::dds_::TransitionEvent_"):
+    timestamp: uint64
+    transition: Transition
+    start_state: State
+    goal_state: State
+
+
+@dataclass
+@final
+class ChangeStateRequest(IdlStruct, typename="lifecycle_msgs::srv::dds_::ChangeState_Request_"):
+    transition: Transition
+
+
+@dataclass
+@final
+class ChangeStateResponse(IdlStruct, typename="lifecycle_msgs::srv::dds_::ChangeState_Response_"):
+    success: bool
+
+
+@dataclass
+@final
+class GetStateRequest(IdlStruct, typename="lifecycle_msgs::srv::dds_::GetState_Request_"):
+    structure_needs_at_least_one_member: uint8
+
+
+@dataclass
+@final
+class GetStateResponse(IdlStruct, typename="lifecycle_msgs::srv::dds_::GetState_Response_"):
+    current_state: State
+
+
+@dataclass
+@final
+class GetAvailableStatesRequest(
+    IdlStruct, typename="lifecycle_msgs::srv::dds_::GetAvailableStates_Request_"
+):
+    structure_needs_at_least_one_member: uint8
+
+
+@dataclass
+@final
+class GetAvailableStatesResponse(
+    IdlStruct, typename="lifecycle_msgs::srv::dds_::GetAvailableStates_Response_"
+):
+    available_states: sequence[State]
+
+
+@dataclass
+@final
+class GetAvailableTransitionsRequest(
+    IdlStruct, typename="lifecycle_msgs::srv::dds_::GetAvailableTransitions_Request_"
+):
+    structure_needs_at_least_one_member: uint8
+
+
+@dataclass
+@final
+class GetAvailableTransitionsResponse(
+    IdlStruct, typename="lifecycle_msgs::srv::dds_::GetAvailableTransitions_Response_"
+):
+    available_transitions: sequence[TransitionDescription]
+
+
+@dataclass
+@final
+class Gid(IdlStruct, typename="rmw_dds_common::msg::dds_::Gid_"):
+    data: array[uint8, 16]
+
+
+@dataclass
+@final
+class NodeEntitiesInfo(IdlStruct, typename="rmw_dds_common::msg::dds_::NodeEntitiesInfo_"):
+    node_namespace: str
+    node_name: str
+    reader_gid_seq: sequence[Gid]
+    writer_gid_seq: sequence[Gid]
+
+
+@dataclass
+@final
+class ParticipantEntitiesInfo(
+    IdlStruct, typename="rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"
+):
+    gid: Gid
+    node_entities_info_seq: sequence[NodeEntitiesInfo]
 
 
 # The last part of a topic's name to its type.

@@ -42,4 +42,8 @@ impl<D: DecodeImage> DecodeImage for Counted<D> {
         self.count.add_one();
         self.image.decode()
     }
+
+    fn as_file(&self) -> Option<&[u8]> {
+        self.image.as_file()
+    }
 }

@@ -46,6 +46,10 @@ impl DecodeImage for StillImage {
         self.decode_whole()
             .map_err(|error| DecodeError::new(format!("`{}`: {error}", self.origin)))
     }
+
+    fn as_file(&self) -> Option<&[u8]> {
+        Some(&self.bytes)
+    }
 }
 
 /// Finds truncation by the end marker, because libjpeg paints what is missing grey and reports success.

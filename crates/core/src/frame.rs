@@ -86,6 +86,11 @@ pub trait DecodeImage: Send + Sync {
     /// # Errors
     /// When the bytes are truncated, not an image, or of another size than the camera's.
     fn decode(&self) -> Result<Pixels, DecodeError>;
+
+    /// The bytes of a whole JPEG or PNG file, where that is what the source delivered.
+    fn as_file(&self) -> Option<&[u8]> {
+        None
+    }
 }
 
 /// An image, decoded when somebody first looks. Clones share it.
@@ -134,6 +139,14 @@ impl Image {
                 None => Err(DecodeError::new("the image has no content")),
             })
             .as_ref()
+    }
+}
+
+impl Image {
+    /// The bytes of a whole JPEG or PNG file, where the source delivered one. They may be damaged.
+    #[must_use]
+    pub fn as_file(&self) -> Option<&[u8]> {
+        self.lazy.encoded.as_ref()?.as_file()
     }
 }
 

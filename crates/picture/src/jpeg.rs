@@ -7,6 +7,7 @@ use opencv::{
     imgproc::{INTER_AREA, resize},
     prelude::*,
 };
+use roadwatch_core::Pixels;
 
 /// Tried one after the other until the picture is small enough.
 const QUALITIES: [i32; 4] = [80, 65, 50, 35];
@@ -14,6 +15,17 @@ const QUALITIES: [i32; 4] = [80, 65, 50, 35];
 const SHRINK: f64 = 0.75;
 /// Narrower than this nothing is seen in it any more, pixels.
 const NARROWEST_PX: f64 = 64.0;
+
+/// So good that a detector sees the same, percent.
+const LASTING_QUALITY: i32 = 95;
+
+/// An image as JPEG, to be kept.
+///
+/// # Errors
+/// When OpenCV refuses.
+pub fn jpeg(image: &Pixels) -> Result<Vec<u8>, DrawError> {
+    encoded(Canvas::of_image(image)?.mat(), LASTING_QUALITY)
+}
 
 impl Canvas {
     /// The picture as JPEG, at most `widest_px` wide and of at most `most_bytes`: it is first scaled, then compressed
@@ -57,7 +69,7 @@ fn encoded(mat: &Mat, quality: i32) -> Result<Vec<u8>, DrawError> {
 mod tests {
     use super::*;
     use opencv::imgcodecs::{IMREAD_COLOR, imdecode};
-    use roadwatch_core::{ImageSize, Pixels};
+    use roadwatch_core::ImageSize;
 
     /// Noise, which does not compress.
     fn noise() -> Canvas {

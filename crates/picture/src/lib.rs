@@ -16,5 +16,6 @@ pub use calibration_view::{MountEvidence, SeenAndPut, corners_view, focal_view, 
 pub use camera_view::camera_view;
 pub use canvas::{Canvas, DrawError};
 pub use contact_sheet::contact_sheet;
+pub use jpeg::jpeg;
 pub use picture_sink::{PictureSink, SCENE_FILE, VIEWS_FILE};
 pub use scene_view::scene_view;

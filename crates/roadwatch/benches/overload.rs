@@ -10,7 +10,7 @@ mod drive;
 use roadwatch::{config::Changes, session::Session};
 use roadwatch_camera::{Pace, PlaybackOptions, Repeat, Speed};
 use roadwatch_pipeline::{Edge, NamedSink, Outcome, Overload, PipelineOptions};
-use roadwatch_ros::{BagSink, LogTime};
+use roadwatch_ros::{BagOptions, BagSink, LogTime};
 use std::{
     path::Path,
     sync::Arc,
@@ -93,7 +93,7 @@ fn measure(config: &Path, speed: Speed) -> Measured {
         &folder.path().join("bag"),
         Arc::clone(&session.rig),
         &session.config.node.options.surface,
-        LogTime::Stamp,
+        BagOptions::new(LogTime::Stamp),
     );
     let sink = NamedSink {
         name: "bag".to_owned(),

@@ -136,6 +136,15 @@ pub struct RunArgs {
     /// Record everything published into this folder (MCAP and metadata.yaml); it must not exist or be empty.
     #[arg(long, value_name = "OUT")]
     pub bag: Option<PathBuf>,
+    /// Record the cameras' images, too: such a bag can be a camera's source again (`bag` and `topic` in its table).
+    #[arg(long, requires = "bag")]
+    pub bag_images: bool,
+    /// Begin another file of the bag when one has so many megabytes of messages.
+    #[arg(long, value_name = "MB", requires = "bag", value_parser = clap::value_parser!(u64).range(1..))]
+    pub bag_split_mb: Option<u64>,
+    /// Begin another file of the bag after so many seconds.
+    #[arg(long, value_name = "SECS", requires = "bag", value_parser = clap::value_parser!(u64).range(1..))]
+    pub bag_split_secs: Option<u64>,
     /// Draw the fullest round of the run into this folder: views.png, every camera with its 3D boxes, and
     /// scene.png, the scene from above.
     #[arg(long, value_name = "DIR")]

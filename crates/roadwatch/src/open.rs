@@ -16,6 +16,7 @@ use std::sync::{Arc, atomic::AtomicUsize};
 
 const CURVE_KEY: &str = "rotation.position_curve";
 
+pub use ros_images::encoded;
 pub use sources::{Feed, sources};
 
 /// Opens the model, or notes why not.

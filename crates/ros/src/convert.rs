@@ -10,7 +10,7 @@ mod seen;
 use crate::{
     msg::{
         roadwatch_msgs::ObjectArray,
-        sensor_msgs::CameraInfo,
+        sensor_msgs::{CameraInfo, CompressedImage},
         tf2_msgs::TFMessage,
         vision_msgs::{Detection2DArray, Detection3DArray},
         visualization_msgs::MarkerArray,
@@ -44,6 +44,8 @@ pub enum Message {
     CameraInfo(Box<CameraInfo>),
     /// For [`TopicKind::TfStatic`].
     TfStatic(TFMessage),
+    /// For [`TopicKind::Image`].
+    Image(CompressedImage),
 }
 
 impl Message {
@@ -57,6 +59,7 @@ impl Message {
             Self::Markers(_) => TopicKind::Markers,
             Self::CameraInfo(_) => TopicKind::CameraInfo,
             Self::TfStatic(_) => TopicKind::TfStatic,
+            Self::Image(_) => TopicKind::Image,
         }
     }
 }
@@ -96,6 +99,12 @@ impl Messages {
     #[must_use]
     pub fn topics(&self) -> &[Topic] {
         self.topics.list()
+    }
+
+    /// The tf frame of a camera's images.
+    #[must_use]
+    pub fn frame_of(&self, camera: CameraId) -> String {
+        self.rig.camera(camera).name.optical_frame()
     }
 
     /// The messages of one output, in order of publishing. Nothing seen gives empty arrays.

@@ -23,7 +23,7 @@ pub mod topics;
 #[path = "../tests/common/mod.rs"]
 mod testing;
 
-pub use bag::{BagError, BagSink, LogTime};
+pub use bag::{BagError, BagOptions, BagSink, LogTime};
 pub use convert::{Message, Messages, Outgoing};
 pub use input::{BagImages, ImageMessage, ImageTopic, TopicCamera};
 pub use lifecycle::Lifecycle;

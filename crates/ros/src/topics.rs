@@ -19,6 +19,8 @@ pub enum TopicKind {
     CameraInfo,
     /// Where the cameras sit.
     TfStatic,
+    /// The camera's images as they came; recorded on request, never published.
+    Image,
 }
 
 /// Whether late joiners get the last message.
@@ -39,13 +41,14 @@ struct Row {
 
 impl TopicKind {
     /// Every kind.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Objects,
         Self::Detections2d,
         Self::Detections3d,
         Self::Markers,
         Self::CameraInfo,
         Self::TfStatic,
+        Self::Image,
     ];
 
     /// What each camera has, in order of publishing.
@@ -70,6 +73,7 @@ impl TopicKind {
             Self::Markers => ("markers", "visualization_msgs/MarkerArray", Volatile),
             Self::CameraInfo => ("camera_info", "sensor_msgs/CameraInfo", Volatile),
             Self::TfStatic => ("tf_static", "tf2_msgs/TFMessage", Latched),
+            Self::Image => ("image/compressed", "sensor_msgs/CompressedImage", Volatile),
         };
         Row {
             suffix,
@@ -140,6 +144,20 @@ impl Topics {
             list,
             cameras: rig.cameras().len(),
         }
+    }
+
+    /// The topics of the images as they came, one per camera: recorded, not published, so not in the list.
+    #[must_use]
+    pub fn of_images(rig: &Rig, surface: &Surface) -> Vec<Topic> {
+        let kind = TopicKind::Image;
+        let cameras = rig.cameras().iter();
+        cameras
+            .map(|camera| Topic {
+                name: surface.topic(&format!("~/{}/{}", camera.name, kind.suffix())),
+                kind,
+                depth: surface.queue_depth,
+            })
+            .collect()
     }
 
     /// The topics, in the order of their places.

@@ -3,7 +3,7 @@
 mod common;
 
 use roadwatch_core::{Sink, Timestamp};
-use roadwatch_ros::{BagError, BagSink, LogTime, Messages, Surface, bag::Summary};
+use roadwatch_ros::{BagError, BagOptions, BagSink, LogTime, Messages, Surface, bag::Summary};
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,
@@ -17,7 +17,8 @@ const ROUNDS: i64 = 3;
 /// Records three rounds into `folder`.
 fn record(folder: &Path, log_time: LogTime) -> Summary {
     let rig = Arc::new(common::two_cameras());
-    let mut bag = BagSink::create(folder, rig, &Surface::default(), log_time).expect("created");
+    let mut bag = BagSink::create(folder, rig, &Surface::default(), BagOptions::new(log_time))
+        .expect("created");
     for output in (0..ROUNDS).flat_map(common::outputs) {
         bag.publish(&output).expect("recorded");
     }
@@ -123,8 +124,13 @@ fn a_recording_that_is_dropped_is_finished() {
     let scratch = scratch();
     let folder = scratch.path().join("drive");
     let rig = Arc::new(common::two_cameras());
-    let mut bag =
-        BagSink::create(&folder, rig, &Surface::default(), LogTime::Stamp).expect("created");
+    let mut bag = BagSink::create(
+        &folder,
+        rig,
+        &Surface::default(),
+        BagOptions::new(LogTime::Stamp),
+    )
+    .expect("created");
     bag.publish(&common::outputs(0)[0]).expect("recorded");
     drop(bag);
     let file = read(&folder.join("drive_0.mcap"));
@@ -140,7 +146,12 @@ fn a_folder_with_somebody_elses_files_is_refused() {
     let scratch = scratch();
     fs::write(scratch.path().join("notes.txt"), "mine").expect("written");
     let rig = Arc::new(common::two_cameras());
-    let refused = BagSink::create(scratch.path(), rig, &Surface::default(), LogTime::Stamp);
+    let refused = BagSink::create(
+        scratch.path(),
+        rig,
+        &Surface::default(),
+        BagOptions::new(LogTime::Stamp),
+    );
     let error = refused.expect_err("refused");
     assert!(matches!(error, BagError::NotEmpty(_)));
     assert!(
@@ -157,7 +168,12 @@ fn a_path_that_cannot_be_a_folder_is_refused() {
     fs::write(&file, "not a folder").expect("written");
     for path in [file.clone(), file.join("below"), "/proc/nowhere/bag".into()] {
         let rig = Arc::new(common::two_cameras());
-        let refused = BagSink::create(&path, rig, &Surface::default(), LogTime::Stamp);
+        let refused = BagSink::create(
+            &path,
+            rig,
+            &Surface::default(),
+            BagOptions::new(LogTime::Stamp),
+        );
         let error = refused.expect_err("refused");
         assert!(matches!(error, BagError::Folder { .. }), "{error}");
         assert!(

@@ -4,7 +4,7 @@
 mod common;
 
 use roadwatch_core::Sink;
-use roadwatch_ros::{BagSink, LogTime, Surface};
+use roadwatch_ros::{BagOptions, BagSink, LogTime, Surface};
 use std::io::Write as _;
 use std::{fs, path::PathBuf, process::Command, sync::Arc};
 use tempfile::TempDir;
@@ -55,8 +55,13 @@ fn a_full_disk_ends_the_recording_with_an_error_and_keeps_what_was_written() {
         return;
     };
     let rig = Arc::new(common::two_cameras());
-    let mut bag = BagSink::create(&disk.folder(), rig, &Surface::default(), LogTime::Stamp)
-        .expect("room for the beginning");
+    let mut bag = BagSink::create(
+        &disk.folder(),
+        rig,
+        &Surface::default(),
+        BagOptions::new(LogTime::Stamp),
+    )
+    .expect("room for the beginning");
     let recorded = (0..10_000)
         .flat_map(common::outputs)
         .take_while(|output| bag.publish(output).is_ok())

@@ -5,7 +5,7 @@ mod common;
 mod python;
 
 use roadwatch_core::Sink;
-use roadwatch_ros::{BagSink, LogTime, Surface};
+use roadwatch_ros::{BagOptions, BagSink, LogTime, Surface};
 use serde_json::{Value, json};
 use std::sync::Arc;
 
@@ -19,8 +19,13 @@ fn rosbags_and_mcap_read_every_message_and_agree() {
     let scratch = tempfile::tempdir().expect("a scratch folder");
     let folder = scratch.path().join("drive");
     let rig = Arc::new(common::two_cameras());
-    let mut bag =
-        BagSink::create(&folder, rig, &Surface::default(), LogTime::Stamp).expect("created");
+    let mut bag = BagSink::create(
+        &folder,
+        rig,
+        &Surface::default(),
+        BagOptions::new(LogTime::Stamp),
+    )
+    .expect("created");
     for output in (0..ROUNDS).flat_map(common::outputs) {
         bag.publish(&output).expect("recorded");
     }

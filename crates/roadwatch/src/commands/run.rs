@@ -7,6 +7,7 @@ use crate::{
     config::{Changes, DatasetChoice},
     failure::Failure,
     node::{DaemonNode, RosoutTap},
+    open::encoded,
     session::{Session, watch},
     status::{self, StatusLine},
 };
@@ -15,7 +16,7 @@ use roadwatch_camera::{Pace as PlaybackPace, PlaybackOptions, Repeat, Speed};
 use roadwatch_core::Sink;
 use roadwatch_picture::{PictureSink, SCENE_FILE, VIEWS_FILE};
 use roadwatch_pipeline::{Metrics, NamedSink, Overload, PipelineOptions};
-use roadwatch_ros::{BagSink, LogTime};
+use roadwatch_ros::{BagOptions, BagSink, LogTime, bag::EncodeImage};
 use std::{
     sync::{
         Arc,
@@ -204,11 +205,17 @@ fn sinks(
             Pace::Realtime => LogTime::WallClock(Box::new(wall_time)),
             Pace::Lossless => LogTime::Stamp,
         };
+        let bytes = |megabytes: u64| megabytes.saturating_mul(1_000_000);
         let bag = BagSink::create(
             folder,
             Arc::clone(&session.rig),
             &session.config.node.options.surface,
-            log_time,
+            BagOptions {
+                split_bytes: args.bag_split_mb.map(bytes),
+                split_after: args.bag_split_secs.map(Duration::from_secs),
+                images: args.bag_images.then(|| Box::new(encoded) as EncodeImage),
+                ..BagOptions::new(log_time)
+            },
         );
         add(BAG, Box::new(bag.context("nothing can be recorded")?));
     }

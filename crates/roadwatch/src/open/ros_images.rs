@@ -2,8 +2,10 @@
 
 use roadwatch_camera::{Counted, DecodeCount, RawImage, Recording, Span, StillImage};
 use roadwatch_core::{DecodeError, Image, ImageSize, SourceError, Timestamp};
-use roadwatch_ros::{BagImages, ImageMessage, input::ToImage};
+use roadwatch_ros::{BagImages, ImageMessage, bag::EncodedImage, input::ToImage};
 use std::time::Duration;
+
+const PNG_START: &[u8] = b"\x89PNG";
 
 /// An image that is decoded when somebody looks; it must be of the camera's size. `origin` is what errors call it.
 pub(super) fn to_image(size: ImageSize, origin: String, decodes: DecodeCount) -> ToImage {
@@ -31,6 +33,26 @@ pub(super) fn to_image(size: ImageSize, origin: String, decodes: DecodeCount) ->
                 Image::encoded(Box::new(Counted::new(raw, decodes)))
             }
         })
+    })
+}
+
+/// An image as a file: the one it came as, or a JPEG of its pixels.
+///
+/// # Errors
+/// When it cannot be decoded or encoded.
+pub fn encoded(image: &Image) -> Result<EncodedImage, DecodeError> {
+    if let Some(file) = image.as_file() {
+        let is_png = file.starts_with(PNG_START);
+        return Ok(EncodedImage {
+            format: if is_png { "png" } else { "jpeg" },
+            bytes: file.to_vec(),
+        });
+    }
+    let pixels = image.pixels().map_err(Clone::clone)?;
+    let bytes = roadwatch_picture::jpeg(pixels);
+    Ok(EncodedImage {
+        format: "jpeg",
+        bytes: bytes.map_err(|error| DecodeError::new(error.to_string()))?,
     })
 }
 

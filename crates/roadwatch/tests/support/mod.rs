@@ -57,6 +57,22 @@ pub(crate) fn python() -> Option<PathBuf> {
     None
 }
 
+/// The peer on Fast DDS; `None`, said loudly, when absent.
+pub(crate) fn fast_dds_peer() -> Option<Command> {
+    let named = variable("ROADWATCH_FAST_DDS_PEER").map(PathBuf::from);
+    let peer = named.unwrap_or_else(|| root().join(".cache/fastdds_peer"));
+    if peer.is_file() {
+        return Some(Command::new(peer));
+    }
+    writeln!(
+        std::io::stderr(),
+        "SKIPPED: {} is not there; ./dev test compiles it",
+        peer.display()
+    )
+    .expect("standard error");
+    None
+}
+
 /// ONNX Runtime's library, for tests that open models in their own process.
 pub(crate) fn runtime_library() -> Option<PathBuf> {
     let named = variable("ORT_DYLIB_PATH").map(PathBuf::from);

@@ -13,6 +13,25 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// What several files hold together.
+    pub(super) fn of(parts: &[Part]) -> Self {
+        let mut whole = Self {
+            messages: Vec::new(),
+            span: None,
+        };
+        for Part { summary, .. } in parts {
+            whole.messages.resize(summary.messages.len(), 0);
+            for (sum, count) in whole.messages.iter_mut().zip(&summary.messages) {
+                *sum += count;
+            }
+            whole.span = match (whole.span, summary.span) {
+                (Some(a), Some(b)) => Some((a.0.min(b.0), a.1.max(b.1))),
+                (a, b) => a.or(b),
+            };
+        }
+        whole
+    }
+
     /// Number of all messages.
     #[must_use]
     pub fn total(&self) -> u64 {
@@ -55,36 +74,59 @@ pub(super) fn offered_qos(topic: &Topic) -> String {
     )
 }
 
-/// The whole file. Its only times are those of messages, so that equal recordings have equal files.
-pub(super) fn yaml(file_name: &str, topics: &[Topic], summary: &Summary) -> String {
+/// One file of a bag.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Part {
+    /// Its name in the folder.
+    pub(super) file_name: String,
+    /// What it holds.
+    pub(super) summary: Summary,
+}
+
+/// The whole file about a bag of these parts. Its only times are those of messages, so that equal recordings have equal
+/// files.
+pub(super) fn yaml(topics: &[Topic], parts: &[Part]) -> String {
+    let whole = Summary::of(parts);
     let mut topic_list = String::new();
-    for (topic, count) in topics.iter().zip(&summary.messages) {
+    for (topic, count) in topics.iter().zip(&whole.messages) {
         push_topic(&mut topic_list, topic, *count);
     }
-    let (start, duration, total) = (summary.start_ns(), summary.duration_ns(), summary.total());
+    let mut paths = String::new();
+    let mut files = String::new();
+    for Part { file_name, summary } in parts {
+        let quoted = quoted(file_name);
+        paths.push_str(&format!("    - {quoted}\n"));
+        files.push_str(&format!(
+            "    - path: {quoted}
+      starting_time:
+        nanoseconds_since_epoch: {}
+      duration:
+        nanoseconds: {}
+      message_count: {}
+",
+            summary.start_ns(),
+            summary.duration_ns(),
+            summary.total()
+        ));
+    }
     format!(
         "rosbag2_bagfile_information:
   version: 5
   storage_identifier: mcap
   duration:
-    nanoseconds: {duration}
+    nanoseconds: {}
   starting_time:
-    nanoseconds_since_epoch: {start}
-  message_count: {total}
+    nanoseconds_since_epoch: {}
+  message_count: {}
   topics_with_message_count:
 {topic_list}  compression_format: \"\"
   compression_mode: \"\"
   relative_file_paths:
-    - {quoted}
-  files:
-    - path: {quoted}
-      starting_time:
-        nanoseconds_since_epoch: {start}
-      duration:
-        nanoseconds: {duration}
-      message_count: {total}
-",
-        quoted = quoted(file_name),
+{paths}  files:
+{files}",
+        whole.duration_ns(),
+        whole.start_ns(),
+        whole.total()
     )
 }
 

@@ -37,7 +37,7 @@ pub enum RecordingError {
     Encode(#[from] EncodeError),
     /// An earlier write failed.
     #[error(
-        "recording stopped after {messages} messages (the last 256 KiB of them may be lost), \
+        "recording stopped after {messages} messages (those of the last second may be lost), \
          {lost_outputs} outputs lost since: {reason}"
     )]
     Stopped {
@@ -63,6 +63,7 @@ pub(crate) struct Recording<W: Write + Seek> {
     writer: Option<Writer<W>>,
     /// Per topic, by its place: the channel's id and the number of messages.
     channels: Vec<Channel>,
+    bytes: u64,
     span: Option<(Timestamp, Timestamp)>,
     failure: Option<Failure>,
 }
@@ -117,6 +118,7 @@ impl<W: Write + Seek> Recording<W> {
         Ok(Self {
             writer: Some(writer),
             channels,
+            bytes: 0,
             span: None,
             failure: None,
         })
@@ -158,9 +160,24 @@ impl<W: Write + Seek> Recording<W> {
             metadata: [("serialized_metadata".to_owned(), metadata.to_owned())].into(),
         })?;
         writer.finish()?;
-        let mut file = writer.into_inner();
-        file.flush()?;
-        Ok(file)
+        Ok(writer.into_inner())
+    }
+
+    /// Puts what was taken into the file: a chunk of its own, which a killed recording keeps.
+    ///
+    /// # Errors
+    /// When it cannot be written; then the recording ends.
+    pub(crate) fn flush(&mut self) -> Result<(), RecordingError> {
+        let Some(writer) = &mut self.writer else {
+            return Ok(());
+        };
+        let flushed = writer.flush().map_err(RecordingError::from);
+        flushed.inspect_err(|error| self.stop(error))
+    }
+
+    /// Bytes of messages taken, before compression.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.bytes
     }
 
     /// What is recorded so far.
@@ -187,13 +204,22 @@ impl<W: Write + Seek> Recording<W> {
             log_time: time_ns,
             publish_time: time_ns,
         };
-        writer.write_to_known_channel(&header, &cdr::encode(&one.message)?)?;
+        let bytes = cdr::encode(&one.message)?;
+        writer.write_to_known_channel(&header, &bytes)?;
+        self.bytes += bytes.len() as u64;
         channel.messages += 1;
         self.span = Some(match self.span {
             None => (logged_at, logged_at),
             Some((first, last)) => (first.min(logged_at), last.max(logged_at)),
         });
         Ok(())
+    }
+
+    /// Ends the recording for a reason of its own; gives that reason.
+    pub(crate) fn give_up(&mut self, cause: io::Error) -> RecordingError {
+        let error = RecordingError::Flush(cause);
+        self.stop(&error);
+        error
     }
 
     /// Closes the file where it is. Bytes still buffered are dropped with it.

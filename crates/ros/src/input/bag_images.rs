@@ -276,7 +276,8 @@ fn files(path: &Path) -> Result<Vec<OneFile>, BagImagesError> {
     }
     let opened = paths.into_iter().map(|path| match summary(&path) {
         Ok(Some(summary)) => Ok(OneFile { path, summary }),
-        Ok(None) | Err(McapError::UnexpectedEof | McapError::UnexpectedEoc) => {
+        Ok(None)
+        | Err(McapError::BadMagic | McapError::UnexpectedEof | McapError::UnexpectedEoc) => {
             Err(BagImagesError::NotFinished(path))
         }
         Err(source) => Err(BagImagesError::Damaged { path, source }),
