@@ -18,6 +18,7 @@ pub mod rosout;
 pub mod sim_clock;
 pub mod surface;
 pub mod topics;
+pub mod type_hash;
 
 #[cfg(test)]
 #[path = "../tests/common/mod.rs"]
@@ -35,3 +36,4 @@ pub use rosout::Rosout;
 pub use sim_clock::SimClock;
 pub use surface::{InvalidSurface, Surface};
 pub use topics::{Topic, TopicKind, Topics};
+pub use type_hash::type_hash;

@@ -8,6 +8,7 @@ pub mod cameras;
 mod changes;
 pub mod detector;
 mod diagnostics;
+mod document;
 mod environment;
 pub mod locate;
 mod mistake;
@@ -29,7 +30,8 @@ pub use node::NodeConfig;
 pub use notes::Notes;
 pub use rotation::RotationConfig;
 
-use reader::{Document, Reader};
+use document::Document;
+use reader::Reader;
 use roadwatch_pipeline::PipelineOptions;
 use std::{fs, path::Path, time::Duration};
 

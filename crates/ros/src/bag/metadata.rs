@@ -1,6 +1,9 @@
 //! `metadata.yaml` of a bag, layout version 5: the newest that Humble reads, and Jazzy reads it too.
 
-use crate::topics::{Retention, Topic};
+use crate::{
+    topics::{Retention, Topic},
+    type_hash::type_hash,
+};
 use roadwatch_core::Timestamp;
 
 /// What a recording holds.
@@ -133,12 +136,15 @@ pub(super) fn yaml(topics: &[Topic], parts: &[Part]) -> String {
 fn push_topic(list: &mut String, topic: &Topic, count: u64) {
     let (name, ros_type) = (&topic.name, long_type_name(topic.kind.ros_type()));
     let qos = quoted(&offered_qos(topic));
+    // A key of later layouts, which readers of this one do not look at.
+    let hash = type_hash(topic.kind.ros_type()).unwrap_or_default();
     list.push_str(&format!(
         "    - topic_metadata:
         name: {name}
         type: {ros_type}
         serialization_format: cdr
         offered_qos_profiles: {qos}
+        type_description_hash: {hash}
       message_count: {count}
 "
     ));

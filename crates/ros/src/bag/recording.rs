@@ -6,6 +6,7 @@ use crate::{
     convert::Outgoing,
     definitions,
     topics::Topic,
+    type_hash::type_hash,
 };
 use mcap::{
     McapError, WriteOptions, Writer,
@@ -241,11 +242,16 @@ fn add_channel<W: Write + Seek>(
     let schema = definitions::schema(ros_type).ok_or(RecordingError::NoDefinition(ros_type))?;
     let name = metadata::long_type_name(ros_type);
     let schema_id = writer.add_schema(&name, "ros2msg", schema.as_bytes())?;
-    let qos = BTreeMap::from([(
-        "offered_qos_profiles".to_owned(),
-        metadata::offered_qos(topic),
-    )]);
-    let id = writer.add_channel(schema_id, &topic.name, "cdr", &qos)?;
+    let hash = type_hash(ros_type).ok_or(RecordingError::NoDefinition(ros_type))?;
+    // The keys that `rosbag2_storage_mcap` reads.
+    let about = BTreeMap::from([
+        (
+            "offered_qos_profiles".to_owned(),
+            metadata::offered_qos(topic),
+        ),
+        ("topic_type_hash".to_owned(), hash),
+    ]);
+    let id = writer.add_channel(schema_id, &topic.name, "cdr", &about)?;
     Ok(Channel { id, messages: 0 })
 }
 

@@ -1,8 +1,12 @@
 //! The Rust types are what the `.msg` files say: names, order, types, counts.
 
 use super::{
+    diagnostic_msgs::DiagnosticArray,
+    lifecycle_msgs::TransitionEvent,
     roadwatch_msgs::ObjectArray,
+    rosgraph_msgs::Clock,
     sensor_msgs::CameraInfo,
+    sensor_msgs::{CompressedImage, Image},
     tf2_msgs::TFMessage,
     vision_msgs::{Detection2DArray, Detection3DArray},
     visualization_msgs::MarkerArray,
@@ -28,6 +32,17 @@ fn traced() -> Registry {
         .trace_simple_type::<CameraInfo>()
         .expect("camera info");
     tracer.trace_simple_type::<TFMessage>().expect("transforms");
+    tracer.trace_simple_type::<Image>().expect("image");
+    tracer
+        .trace_simple_type::<CompressedImage>()
+        .expect("image");
+    tracer.trace_simple_type::<Clock>().expect("clock");
+    tracer
+        .trace_simple_type::<DiagnosticArray>()
+        .expect("diagnostics");
+    tracer
+        .trace_simple_type::<TransitionEvent>()
+        .expect("transition");
     tracer.registry().expect("complete")
 }
 
@@ -73,7 +88,11 @@ fn compare_field(member: &Named<Format>, field: &Field) -> Result<(), String> {
 
 /// A definition's type without its package, which serde does not see.
 fn ros_name(field: &Field) -> String {
-    field.base.rsplit('/').next().unwrap_or_default().to_owned()
+    match field.base.as_str() {
+        // The same eight bits.
+        "byte" => "uint8".to_owned(),
+        name => name.rsplit('/').next().unwrap_or_default().to_owned(),
+    }
 }
 
 /// ROS's name and count of what serde sees; nested fixed arrays count as one flat array.
@@ -110,8 +129,15 @@ fn embedded(ros_type: &str) -> Option<String> {
 #[test]
 fn every_published_type_is_what_its_definition_says() {
     let rust = traced();
-    for kind in TopicKind::ALL {
-        assert_eq!(compare(&rust, kind.ros_type(), &embedded), Ok(()));
+    let others = [
+        "sensor_msgs/Image",
+        "rosgraph_msgs/Clock",
+        "diagnostic_msgs/DiagnosticArray",
+        "lifecycle_msgs/TransitionEvent",
+    ];
+    let published = TopicKind::ALL.map(TopicKind::ros_type);
+    for ros_type in published.into_iter().chain(others) {
+        assert_eq!(compare(&rust, ros_type, &embedded), Ok(()));
     }
 }
 
