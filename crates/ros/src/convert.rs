@@ -1,5 +1,6 @@
 //! From outputs to messages: pure functions, the same for the node and for the bag.
 
+mod autoware;
 mod calibration;
 mod detections;
 mod markers;
@@ -9,6 +10,7 @@ mod seen;
 
 use crate::{
     msg::{
+        autoware_perception_msgs::DetectedObjects,
         roadwatch_msgs::ObjectArray,
         sensor_msgs::{CameraInfo, CompressedImage},
         tf2_msgs::TFMessage,
@@ -44,6 +46,8 @@ pub enum Message {
     CameraInfo(Box<CameraInfo>),
     /// For [`TopicKind::TfStatic`].
     TfStatic(TFMessage),
+    /// For [`TopicKind::DetectedObjects`].
+    DetectedObjects(DetectedObjects),
     /// For [`TopicKind::Image`].
     Image(CompressedImage),
 }
@@ -59,6 +63,7 @@ impl Message {
             Self::Markers(_) => TopicKind::Markers,
             Self::CameraInfo(_) => TopicKind::CameraInfo,
             Self::TfStatic(_) => TopicKind::TfStatic,
+            Self::DetectedObjects(_) => TopicKind::DetectedObjects,
             Self::Image(_) => TopicKind::Image,
         }
     }
@@ -192,6 +197,7 @@ fn of_objects(kind: TopicKind, seen: &SeenTogether<'_>) -> Message {
     match kind {
         TopicKind::Detections3d => Message::Detections3d(detections::detections_3d(seen)),
         TopicKind::Markers => Message::Markers(markers::markers(seen)),
+        TopicKind::DetectedObjects => Message::DetectedObjects(autoware::detected_objects(seen)),
         _ => Message::Objects(objects::objects(seen)),
     }
 }

@@ -6,6 +6,26 @@
 /// Text of each definition by `package/Type`, in alphabetical order.
 const DEFINITIONS: &[(&str, &str)] = &[
     (
+        "autoware_perception_msgs/DetectedObject",
+        include_str!("../msg/autoware_perception_msgs/DetectedObject.msg"),
+    ),
+    (
+        "autoware_perception_msgs/DetectedObjectKinematics",
+        include_str!("../msg/autoware_perception_msgs/DetectedObjectKinematics.msg"),
+    ),
+    (
+        "autoware_perception_msgs/DetectedObjects",
+        include_str!("../msg/autoware_perception_msgs/DetectedObjects.msg"),
+    ),
+    (
+        "autoware_perception_msgs/ObjectClassification",
+        include_str!("../msg/autoware_perception_msgs/ObjectClassification.msg"),
+    ),
+    (
+        "autoware_perception_msgs/Shape",
+        include_str!("../msg/autoware_perception_msgs/Shape.msg"),
+    ),
+    (
         "builtin_interfaces/Duration",
         include_str!("../msg/builtin_interfaces/Duration.msg"),
     ),
@@ -30,6 +50,14 @@ const DEFINITIONS: &[(&str, &str)] = &[
         include_str!("../msg/geometry_msgs/Point.msg"),
     ),
     (
+        "geometry_msgs/Point32",
+        include_str!("../msg/geometry_msgs/Point32.msg"),
+    ),
+    (
+        "geometry_msgs/Polygon",
+        include_str!("../msg/geometry_msgs/Polygon.msg"),
+    ),
+    (
         "geometry_msgs/Pose",
         include_str!("../msg/geometry_msgs/Pose.msg"),
     ),
@@ -48,6 +76,14 @@ const DEFINITIONS: &[(&str, &str)] = &[
     (
         "geometry_msgs/TransformStamped",
         include_str!("../msg/geometry_msgs/TransformStamped.msg"),
+    ),
+    (
+        "geometry_msgs/Twist",
+        include_str!("../msg/geometry_msgs/Twist.msg"),
+    ),
+    (
+        "geometry_msgs/TwistWithCovariance",
+        include_str!("../msg/geometry_msgs/TwistWithCovariance.msg"),
     ),
     (
         "geometry_msgs/Vector3",

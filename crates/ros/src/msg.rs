@@ -3,6 +3,7 @@
 //! Fields stand in the order of the `.msg` files, because CDR has no field names: order and type are
 //! the wire format. A test compares every type with its `.msg` file.
 
+pub mod autoware_perception_msgs;
 pub mod builtin_interfaces;
 pub mod diagnostic_msgs;
 pub mod geometry_msgs;

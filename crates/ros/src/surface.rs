@@ -18,6 +18,8 @@ pub struct Surface {
     pub base_frame: String,
     /// Messages that a per-frame topic keeps for slow readers; at least 1.
     pub queue_depth: usize,
+    /// Whether the scene is published as Autoware's messages, too.
+    pub autoware: bool,
     /// Other names of topics, both absolute; none by default.
     pub remapped: Vec<(String, String)>,
 }
@@ -30,6 +32,7 @@ impl Default for Surface {
             namespace: "/".to_owned(),
             base_frame: "base_link".to_owned(),
             queue_depth: DEFAULT_QUEUE_DEPTH,
+            autoware: false,
             remapped: Vec::new(),
         }
     }

@@ -19,6 +19,8 @@ pub enum TopicKind {
     CameraInfo,
     /// Where the cameras sit.
     TfStatic,
+    /// The objects as Autoware takes them.
+    DetectedObjects,
     /// The camera's images as they came; recorded on request, never published.
     Image,
 }
@@ -41,13 +43,14 @@ struct Row {
 
 impl TopicKind {
     /// Every kind.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Objects,
         Self::Detections2d,
         Self::Detections3d,
         Self::Markers,
         Self::CameraInfo,
         Self::TfStatic,
+        Self::DetectedObjects,
         Self::Image,
     ];
 
@@ -73,6 +76,11 @@ impl TopicKind {
             Self::Markers => ("markers", "visualization_msgs/MarkerArray", Volatile),
             Self::CameraInfo => ("camera_info", "sensor_msgs/CameraInfo", Volatile),
             Self::TfStatic => ("tf_static", "tf2_msgs/TFMessage", Latched),
+            Self::DetectedObjects => (
+                "detected_objects",
+                "autoware_perception_msgs/DetectedObjects",
+                Volatile,
+            ),
             Self::Image => ("image/compressed", "sensor_msgs/CompressedImage", Volatile),
         };
         Row {
@@ -140,6 +148,9 @@ impl Topics {
             list.extend(TopicKind::PER_CAMERA.map(|kind| below(camera.name.as_str(), kind)));
         }
         list.extend(TopicKind::PER_SCENE.map(|kind| below("scene", kind)));
+        if surface.autoware {
+            list.push(below("scene", TopicKind::DetectedObjects));
+        }
         Self {
             list,
             cameras: rig.cameras().len(),
@@ -174,11 +185,11 @@ impl Topics {
         first..first + count
     }
 
-    /// The places of the scene's topics, in the order of [`TopicKind::PER_SCENE`].
+    /// The places of the scene's topics, in the order of [`TopicKind::PER_SCENE`]; Autoware's last, if it is there.
     #[must_use]
     pub fn of_scene(&self) -> Range<usize> {
         let first = Self::TF_STATIC + 1 + self.cameras * TopicKind::PER_CAMERA.len();
-        first..first + TopicKind::PER_SCENE.len()
+        first..self.list.len()
     }
 }
 

@@ -32,6 +32,7 @@ pub(super) fn read(node: &Reader<'_, '_>) -> NodeConfig {
         queue_depth: node
             .integer("queue_depth", 1..=1000)
             .map_or(DEFAULT_QUEUE_DEPTH, |depth| depth as usize),
+        autoware: node.flag("autoware").unwrap_or(false),
         ..defaults
     };
     note_refused_names(node, &surface);
@@ -109,6 +110,16 @@ fn domain_of_environment(node: &Reader<'_, '_>) -> Option<u16> {
 /// `ROS_LOCALHOST_ONLY`, and `ROS_AUTOMATIC_DISCOVERY_RANGE` of Iron and later.
 fn localhost_only(node: &Reader<'_, '_>) -> bool {
     let environment = node.document().environment();
+    if environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE") == Some("OFF") {
+        let what = "ROS_AUTOMATIC_DISCOVERY_RANGE is OFF, and a node that nobody finds publishes for nobody: say \
+                    `publish = false`, or another range";
+        node.note("publish", what);
+    }
+    if environment.get("ROS_STATIC_PEERS").is_some() {
+        tracing::warn!(
+            "ROS_STATIC_PEERS is not looked at: others are found by multicast, and on this machine"
+        );
+    }
     environment.get("ROS_LOCALHOST_ONLY") == Some("1")
         || environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE") == Some("LOCALHOST")
 }

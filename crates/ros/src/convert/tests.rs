@@ -196,3 +196,37 @@ fn tf_static_places_every_camera_with_a_unit_quaternion() {
     let q = rear.transform.rotation;
     assert!((q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w - 1.0).abs() < 1e-12);
 }
+
+#[test]
+fn autoware_is_told_what_is_known_and_no_more() {
+    use crate::msg::autoware_perception_msgs::{
+        DetectedObjectKinematics as Kinematics, ObjectClassification as Class, Shape,
+    };
+    let surface = Surface {
+        autoware: true,
+        ..Surface::default()
+    };
+    let messages = Messages::new(Arc::new(testing::two_cameras()), &surface).expect("legal names");
+    let outputs = testing::outputs(0);
+    let sent = outputs.iter().flat_map(|output| messages.of(output)).last();
+    let sent = sent.expect("the scene's last topic");
+    let topic = &messages.topics()[sent.topic].name;
+    assert_eq!(topic, "/roadwatch/scene/detected_objects");
+    let Message::DetectedObjects(array) = sent.message else {
+        panic!("Autoware's objects");
+    };
+    let (car, person) = (&array.objects[0], &array.objects[1]);
+    assert_eq!(car.classification[0].label, Class::CAR);
+    assert_eq!(
+        car.kinematics.orientation_availability,
+        Kinematics::UNAVAILABLE
+    );
+    assert_eq!(car.shape.kind, Shape::BOUNDING_BOX);
+    assert!(car.kinematics.has_position_covariance && !car.kinematics.has_twist);
+    assert_eq!(person.classification[0].label, Class::PEDESTRIAN);
+    assert_eq!(
+        person.kinematics.orientation_availability,
+        Kinematics::AVAILABLE
+    );
+    assert_eq!(person.shape.kind, Shape::CYLINDER);
+}

@@ -129,3 +129,39 @@ pub struct TransformStamped {
     /// The child frame as seen from the parent frame.
     pub transform: Transform,
 }
+
+/// A velocity.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Twist {
+    /// Metres per second.
+    pub linear: Vector3,
+    /// Radians per second.
+    pub angular: Vector3,
+}
+
+/// A velocity with its covariance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TwistWithCovariance {
+    /// The velocity.
+    pub twist: Twist,
+    /// Row by row, as of a pose.
+    pub covariance: [[f64; 6]; 6],
+}
+
+/// A point of less precision.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Point32 {
+    /// First coordinate.
+    pub x: f32,
+    /// Second coordinate.
+    pub y: f32,
+    /// Third coordinate.
+    pub z: f32,
+}
+
+/// A polygon.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Polygon {
+    /// Its corners.
+    pub points: Vec<Point32>,
+}

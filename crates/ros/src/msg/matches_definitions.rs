@@ -1,6 +1,7 @@
 //! The Rust types are what the `.msg` files say: names, order, types, counts.
 
 use super::{
+    autoware_perception_msgs::DetectedObjects,
     diagnostic_msgs::DiagnosticArray,
     lifecycle_msgs::TransitionEvent,
     roadwatch_msgs::ObjectArray,
@@ -36,6 +37,9 @@ fn traced() -> Registry {
     tracer
         .trace_simple_type::<CompressedImage>()
         .expect("image");
+    tracer
+        .trace_simple_type::<DetectedObjects>()
+        .expect("Autoware's objects");
     tracer.trace_simple_type::<Clock>().expect("clock");
     tracer
         .trace_simple_type::<DiagnosticArray>()
