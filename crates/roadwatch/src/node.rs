@@ -126,6 +126,13 @@ impl DaemonNode {
         self.lifecycle.phase() == Phase::Active
     }
 
+    /// Says that the pipeline does not run yet. To be called once a second.
+    pub fn report_waiting(&self) {
+        if let Some(diagnostics) = &self.diagnostics {
+            diagnostics.publish_waiting(now(self.clock.as_deref()));
+        }
+    }
+
     /// Says how the pipeline is, and takes the markers of cameras away that are gone. To be called once a second.
     pub fn report(&mut self, metrics: &Metrics) {
         let stamp = now(self.clock.as_deref());

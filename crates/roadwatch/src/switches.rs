@@ -1,6 +1,6 @@
 //! Which cameras are looked at: all of an active node that are enabled.
 
-use roadwatch_core::{CameraId, Frame, FrameSource, SourceError};
+use roadwatch_core::{CameraId, Frame, FrameSource, Output, Sink, SinkError, SourceError};
 use std::{
     sync::{
         Arc,
@@ -63,6 +63,35 @@ impl Switches {
                 Box::new(switched) as Box<dyn FrameSource>
             })
             .collect()
+    }
+}
+
+impl Switches {
+    /// A sink that publishes only while the node is active: what is still on its way when that ends stays unsaid.
+    #[must_use]
+    pub fn put_behind(&self, sink: Box<dyn Sink>) -> Box<dyn Sink> {
+        Box::new(Gated {
+            sink,
+            active: Arc::clone(&self.active),
+        })
+    }
+}
+
+struct Gated {
+    sink: Box<dyn Sink>,
+    active: Arc<AtomicBool>,
+}
+
+impl Sink for Gated {
+    fn publish(&mut self, output: &Output) -> Result<(), SinkError> {
+        match self.active.load(Ordering::Relaxed) {
+            true => self.sink.publish(output),
+            false => Ok(()),
+        }
+    }
+
+    fn finish(&mut self) -> Result<(), SinkError> {
+        self.sink.finish()
     }
 }
 

@@ -102,7 +102,7 @@ pub struct RosNode {
     node: Arc<Mutex<Node>>,
     surface: Surface,
     audience: Arc<Audience>,
-    thread: Option<(oneshot::Sender<()>, JoinHandle<()>)>,
+    threads: Vec<Running>,
 }
 
 impl fmt::Debug for RosNode {
@@ -127,19 +127,20 @@ impl RosNode {
             .map(|service| service.offered_by(&mut node))
             .collect::<Result<Vec<_>, _>>()?;
         let audience = Arc::new(Audience::new(participant.clone()));
-        let watched = Arc::clone(&audience);
-        let (stop, stopped) = oneshot::channel();
-        let work =
-            move || futures::executor::block_on(serve(servers, participant, watched, stopped));
-        let thread = thread::Builder::new()
-            .name("ros node".to_owned())
-            .spawn(work)
-            .map_err(RosError::Thread)?;
+        let (watched, asked) = (Arc::clone(&audience), Arc::clone(&audience));
+        let threads = vec![
+            Running::start("ros discovery", move |stopped| {
+                futures::executor::block_on(watch(participant, &watched, stopped));
+            })?,
+            Running::start("ros services", move |stopped| {
+                futures::executor::block_on(serve(servers, &asked, stopped));
+            })?,
+        ];
         Ok(Arc::new(Self {
             node: Arc::new(Mutex::new(node)),
             surface: options.surface.clone(),
             audience,
-            thread: Some((stop, thread)),
+            threads,
         }))
     }
 
@@ -204,13 +205,34 @@ impl RosNode {
 
 impl Drop for RosNode {
     fn drop(&mut self) {
-        let Some((stop, thread)) = self.thread.take() else {
-            return;
-        };
-        // The thread may have ended by itself.
-        stop.send(()).ok();
-        if thread.join().is_err() {
-            tracing::error!("thread of the ROS 2 node panicked");
+        self.threads.drain(..).for_each(Running::stop);
+    }
+}
+
+/// A thread that ends when it is told to.
+struct Running {
+    stop: oneshot::Sender<()>,
+    thread: JoinHandle<()>,
+}
+
+impl Running {
+    fn start(
+        name: &str,
+        work: impl FnOnce(oneshot::Receiver<()>) + Send + 'static,
+    ) -> Result<Self, RosError> {
+        let (stop, stopped) = oneshot::channel();
+        let thread = thread::Builder::new()
+            .name(name.to_owned())
+            .spawn(move || work(stopped))
+            .map_err(RosError::Thread)?;
+        Ok(Self { stop, thread })
+    }
+
+    fn stop(self) {
+        // It may have ended by itself.
+        self.stop.send(()).ok();
+        if self.thread.join().is_err() {
+            tracing::error!("a thread of the ROS 2 node panicked");
         }
     }
 }
@@ -249,11 +271,10 @@ impl<M: Serialize> Outlet<M> {
     }
 }
 
-/// Answers requests and follows discovery until it is told to stop.
-async fn serve(
-    offered: Vec<service::Offered>,
+/// Follows discovery until it is told to stop.
+async fn watch(
     participant: DomainParticipant,
-    audience: Arc<Audience>,
+    audience: &Audience,
     stopped: oneshot::Receiver<()>,
 ) {
     let listener = participant.status_listener();
@@ -261,9 +282,17 @@ async fn serve(
         audience.hear(&event);
         future::ready(())
     });
-    let answering = future::join_all(offered.into_iter().map(service::Offered::answer_all));
-    let working = future::join(watching, answering);
-    future::select(pin!(working), stopped).await;
+    future::select(pin!(watching), stopped).await;
+}
+
+/// Answers requests until it is told to stop. On a thread of its own, because an answer may have to wait for its reader.
+async fn serve(
+    offered: Vec<service::Offered>,
+    audience: &Audience,
+    stopped: oneshot::Receiver<()>,
+) {
+    let answering = offered.into_iter().map(|one| one.answer_all(audience));
+    future::select(future::join_all(answering), stopped).await;
 }
 
 /// Reliable, volatile, `depth` messages kept: what most of ROS's topics are. Sending never waits: a full window is an

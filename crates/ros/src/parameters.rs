@@ -212,7 +212,8 @@ impl Parameters {
         let checked: Vec<_> = checked.collect::<Result<_, String>>()?;
         for (parameter, value) in checked {
             if let Ok(write) = &parameter.write {
-                write(&value)?;
+                let name = &parameter.name;
+                write(&value).map_err(|why| format!("parameter `{name}`: {why}"))?;
                 tracing::info!(parameter = parameter.name, ?value, "parameter set");
                 (self.on_change)(&parameter.name, value);
             }

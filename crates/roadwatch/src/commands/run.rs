@@ -122,7 +122,12 @@ fn hold_back(node: &DaemonNode, autostart: bool, stop_requested: impl Fn() -> bo
         return;
     }
     eprintln!("waiting to be configured and activated (node.autostart is false)");
+    let mut next_report = Instant::now();
     while !node.is_active() && !stop_requested() {
+        if Instant::now() >= next_report {
+            next_report += STATUS_PERIOD;
+            node.report_waiting();
+        }
         thread::park_timeout(LOOK);
     }
 }
@@ -192,12 +197,13 @@ fn sinks(
         });
     };
     if let Some(node) = node {
+        let switches = &session.controls.switches;
         if let Some(sink) = node.sink() {
-            add("ros2", Box::new(sink));
+            add("ros2", switches.put_behind(Box::new(sink)));
         }
         let annotated = node.annotated_images(session);
         if let Some(sink) = annotated.context("no annotated images can be published")? {
-            add("annotated", Box::new(sink));
+            add("annotated", switches.put_behind(Box::new(sink)));
         }
     }
     if let Some(folder) = &args.bag {

@@ -98,15 +98,23 @@ impl Diagnostics {
         status.push(self.stages(metrics));
         let names = metrics.sink_names().enumerate();
         status.extend(names.map(|(at, name)| self.sink(name, at, &look, metrics)));
-        let array = DiagnosticArray {
-            header: Header::new(stamp, ""),
-            status,
-        };
-        if let Err(error) = self.outlet.publish(array) {
-            tracing::debug!(error, "not published on /diagnostics");
-        }
+        self.send(status, stamp);
         self.before = Some(look);
         gone
+    }
+
+    /// Says that nothing is looked at yet.
+    pub(super) fn publish_waiting(&self, stamp: Timestamp) {
+        let message = "waiting to be configured and activated".to_owned();
+        let status = self.status("node", DiagnosticStatus::OK, message, Vec::new());
+        self.send(vec![status], stamp);
+    }
+
+    fn send(&self, status: Vec<DiagnosticStatus>, stamp: Timestamp) {
+        let header = Header::new(stamp, "");
+        if let Err(error) = self.outlet.publish(DiagnosticArray { header, status }) {
+            tracing::debug!(error, "not published on /diagnostics");
+        }
     }
 
     /// Notes which cameras spoke since the last look.

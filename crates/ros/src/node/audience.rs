@@ -10,7 +10,14 @@ use std::{
         Arc, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicUsize, Ordering},
     },
+    thread,
+    time::{Duration, Instant},
 };
+
+/// Who asks is also found within this time; `rmw_fastrtps` waits for a tenth of a second.
+const REPLY_PATIENCE: Duration = Duration::from_millis(300);
+/// Between two looks.
+const LOOK: Duration = Duration::from_millis(1);
 
 /// Counts the readers of every topic, as discovery tells of them.
 pub(super) struct Audience {
@@ -24,6 +31,8 @@ struct Known {
     topics: BTreeMap<String, Arc<AtomicUsize>>,
     /// Our endpoints and what ROS calls their topics.
     endpoints: BTreeMap<GUID, String>,
+    /// Readers that our writers reach.
+    matched: BTreeSet<GUID>,
     /// Readers and writers that were found not to fit, so that each is told of once.
     unfit: BTreeSet<GUID>,
 }
@@ -54,10 +63,15 @@ impl Audience {
 
     pub(super) fn hear(&self, event: &Event) {
         match event {
-            Event::RemoteReaderMatched { .. }
-            | Event::ReaderDetected { .. }
-            | Event::ReaderLost { .. }
-            | Event::ParticipantLost { .. } => self.count(),
+            Event::RemoteReaderMatched { remote_reader, .. } => {
+                self.lock().matched.insert(*remote_reader);
+                self.count();
+            }
+            Event::ReaderLost { guid, .. } => {
+                self.lock().matched.remove(guid);
+                self.count();
+            }
+            Event::ReaderDetected { .. } | Event::ParticipantLost { .. } => self.count(),
             Event::RemoteReaderQosIncompatible {
                 local_writer,
                 remote_reader,
@@ -83,6 +97,26 @@ impl Audience {
             }
             _ => {}
         }
+    }
+
+    /// Waits until a reader of the DDS topic `topic` is reached in the process that the GUID `asker` is of, but not for
+    /// ever: what is written before that, a volatile writer does not repeat.
+    pub(super) fn wait_for(&self, topic: &str, asker: GUID) {
+        let until = Instant::now() + REPLY_PATIENCE;
+        while !self.is_reached(topic, asker) && Instant::now() < until {
+            thread::park_timeout(LOOK);
+        }
+    }
+
+    fn is_reached(&self, topic: &str, asker: GUID) -> bool {
+        let known = self.lock();
+        let readers = self.participant.discovered_readers();
+        readers.iter().any(|reader| {
+            let guid = reader.reader_proxy.remote_reader_guid;
+            guid.prefix == asker.prefix
+                && known.matched.contains(&guid)
+                && reader.subscription_topic_data.topic_name() == topic
+        })
     }
 
     fn count(&self) {

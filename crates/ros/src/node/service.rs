@@ -5,7 +5,7 @@
 //! front of the message instead. Topics and types are the same, so one server hears both kinds of clients, and tells
 //! them apart by the vendor in the GUID of who asks (DDSI-RTPS 2.5, 8.2.4.2).
 
-use super::{Cause, RosError, endpoint, raw::Raw, reliable};
+use super::{Cause, RosError, audience::Audience, endpoint, raw::Raw, reliable};
 use byteorder::LittleEndian;
 use ros2_client::{Name, Node, RmwRequestId, Server, ServiceMapping, ServiceTypeName};
 use serde::{Serialize, de::DeserializeOwned};
@@ -82,10 +82,14 @@ pub(super) struct Offered {
 
 impl Offered {
     /// Answers requests, for ever.
-    pub(super) async fn answer_all(mut self) {
+    pub(super) async fn answer_all(mut self, audience: &Audience) {
+        let replies = format!("rr{}Reply", self.service.name);
         loop {
             let answered = match self.server.async_receive_request().await {
-                Ok((id, request)) => self.answer(id, &request.0),
+                Ok((id, request)) => {
+                    audience.wait_for(&replies, id.writer_gid.into());
+                    self.answer(id, &request.0)
+                }
                 Err(error) => Err(error.into()),
             };
             if let Err(error) = answered {
