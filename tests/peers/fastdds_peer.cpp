@@ -1,6 +1,6 @@
 // A peer on Fast DDS, on loopback only: stands for a ROS 2 node under rmw_fastrtps_cpp.
 //
-//   fastdds_peer read  --domain N --topic /t --type T [--best-effort] [--transient-local] [--depth D] [--expect K]
+//   fastdds_peer read  --domain N --topic /t[,/u…] --type T [--best-effort] [--transient-local] [--depth D] [--expect K]
 //   fastdds_peer write --domain N --topic /t --type T --payload-file FILE|- [--count K] [--rate HZ]
 //                      [--best-effort] [--transient-local] [--depth D]
 //   fastdds_peer call  --domain N --service /s --type T --request HEX [--repeat K]
@@ -11,7 +11,7 @@
 //
 // Prints the line "ready" once its readers and writers exist, "matched" once each has found its counterpart, then:
 //
-//   read   {"topic", "count", "bytes", "sizes", "first"}   at the end; `first` is the first sample
+//   read   {"topic", "count", "bytes", "sizes", "first"}   per topic, at the end; `first` is the first sample
 //   write  {"topic", "count", "acknowledged"}              at the end; null where nobody acknowledges
 //   call   {"service", "reply", "ms", "ignored"}           per call; `ignored` are replies to somebody else
 //
@@ -33,6 +33,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -268,26 +269,55 @@ Qos qos_of(const Arguments& arguments) {
     return {!arguments.has("--best-effort"), arguments.has("--transient-local"), depth};
 }
 
-void read_topic(Peer& peer, const Arguments& arguments, const Deadline& deadline) {
-    const auto topic = arguments.text("--topic");
-    const size_t expected = arguments.number("--expect", 0);
-    auto* reader = peer.reader("rt" + topic, arguments.text("--type"), qos_of(arguments));
-    say("ready");
-    const bool found = deadline.wait_until([&] { return matched(reader); });
-    if (found) say("matched");
-    Bytes sample, first;
-    fast::SampleInfo about;
+// One of the topics that are read, and what came of it.
+struct Tally {
+    std::string topic;
+    fast::DataReader* reader;
     size_t count = 0, bytes = 0;
     std::string sizes;
-    while ((expected == 0 || count < expected) && next(reader, sample, about, deadline)) {
-        sizes += (count == 0 ? "" : ",") + std::to_string(sample.size());
-        if (count++ == 0) first = sample;
-        bytes += sample.size();
+    Bytes first;
+
+    // Takes everything that is there.
+    bool take(size_t most) {
+        Bytes sample;
+        fast::SampleInfo about;
+        bool taken = false;
+        while ((most == 0 || count < most) && reader->take_next_sample(&sample, &about) == OK) {
+            if (!about.valid_data) continue;
+            sizes += (count == 0 ? "" : ",") + std::to_string(sample.size());
+            if (count++ == 0) first = sample;
+            bytes += sample.size();
+            taken = true;
+        }
+        return taken;
     }
-    say("{\"topic\":\"" + topic + "\",\"count\":" + std::to_string(count) + ",\"bytes\":" + std::to_string(bytes) +
-        ",\"sizes\":[" + sizes + "],\"first\":\"" + to_hex(first) + "\"}");
+
+    std::string report() const {
+        return "{\"topic\":\"" + topic + "\",\"count\":" + std::to_string(count) + ",\"bytes\":" +
+               std::to_string(bytes) + ",\"sizes\":[" + sizes + "],\"first\":\"" + to_hex(first) + "\"}";
+    }
+};
+
+// Reads one topic, or several with commas between them, all of one type.
+void read_topic(Peer& peer, const Arguments& arguments, const Deadline& deadline) {
+    const size_t expected = arguments.number("--expect", 0);
+    std::vector<Tally> tallies;
+    std::istringstream topics(arguments.text("--topic"));
+    for (std::string topic; std::getline(topics, topic, ',');)
+        tallies.push_back({topic, peer.reader("rt" + topic, arguments.text("--type"), qos_of(arguments))});
+    const auto all = [&](auto condition) { return std::all_of(tallies.begin(), tallies.end(), condition); };
+    say("ready");
+    const bool found = deadline.wait_until([&] { return all([](auto& one) { return matched(one.reader); }); });
+    if (found) say("matched");
+    const auto complete = [&](const Tally& one) { return expected != 0 && one.count >= expected; };
+    while (!deadline.passed() && !all(complete)) {
+        bool taken = false;
+        for (auto& tally : tallies) taken = tally.take(expected) || taken;
+        if (!taken) deadline.sleep_until(Clock::now() + POLL);
+    }
+    for (const auto& tally : tallies) say(tally.report());
     if (!found) throw std::runtime_error("found no matching writer");
-    if (count < expected) throw std::runtime_error("too few samples");
+    if (expected != 0 && !all(complete)) throw std::runtime_error("too few samples");
 }
 
 void write_topic(Peer& peer, const Arguments& arguments, const Deadline& deadline) {

@@ -76,7 +76,12 @@ def read_with_rosbags(folder):
             store.register({name: type_ for name, type_ in types.items() if name not in store.types})
         tallies = {c.topic: Tally(c.msgtype) for c in reader.connections}
         for connection, _, raw in reader.messages():
-            tallies[connection.topic].add(store.deserialize_cdr(raw, connection.msgtype))
+            message = store.deserialize_cdr(raw, connection.msgtype)
+            tallies[connection.topic].add(message)
+            # Written again by somebody else, the message must be the same bytes; the end may be padded.
+            again = bytes(store.serialize_cdr(message, connection.msgtype))
+            if again.rstrip(b"\0") != bytes(raw).rstrip(b"\0"):
+                sys.exit(f"{connection.topic}: other bytes than an independent writer's")
         found = {topic: tally.as_dict() for topic, tally in tallies.items()}
         for connection in reader.connections:
             qos = connection.ext.offered_qos_profiles[0]

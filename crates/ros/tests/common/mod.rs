@@ -29,7 +29,7 @@ pub(crate) fn two_cameras() -> Rig {
     Rig::new(cameras, 0.0).expect("two names")
 }
 
-fn camera(name: &str, yaw_rad: f64, x_m: f64, distortion: Distortion) -> RigCamera {
+pub(crate) fn camera(name: &str, yaw_rad: f64, x_m: f64, distortion: Distortion) -> RigCamera {
     let mount = Mount {
         yaw_rad,
         ..Mount::ahead([x_m, 0.0, 1.5])
@@ -78,7 +78,7 @@ pub(crate) fn outputs(round: i64) -> Vec<Output> {
     ]
 }
 
-fn of_camera(id: u8, round: i64, captured_at: Timestamp, items: Vec<Track>) -> Output {
+pub(crate) fn of_camera(id: u8, round: i64, captured_at: Timestamp, items: Vec<Track>) -> Output {
     // What is seen at all comes with one detection that no method could locate.
     let unlocated: Vec<_> = items.iter().take(1).map(|_| detection("boat")).collect();
     let size = ImageSize {
@@ -107,7 +107,7 @@ fn detection(class: &str) -> Detection {
     }
 }
 
-fn track(id: u64, class: &str, yaw_rad: Option<f64>) -> Track {
+pub(crate) fn track(id: u64, class: &str, yaw_rad: Option<f64>) -> Track {
     let location = Location {
         position: Point::new(20.0, 2.0 + id as f64, 0.75),
         covariance: Covariance::new(Matrix3::new(4.0, 0.5, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0, 0.25)),
