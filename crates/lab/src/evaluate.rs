@@ -2,7 +2,8 @@
 
 use crate::{
     bootstrap::Intervals,
-    matching::{TruthFilter, match_image},
+    identity::{IdentityReport, SeenTrack, SeenTruth, Sighting},
+    matching::{Matches, TruthFilter, match_image},
     recorder::Recorded,
     report::{DetectionScore, Report},
     sample::{Estimator, Sample, Target},
@@ -70,6 +71,7 @@ struct Matched<'a> {
     false_alarms: usize,
     targets: Vec<Arc<Target>>,
     pairs: Vec<Pair<'a>>,
+    sightings: Vec<Sighting>,
 }
 
 /// Matches everything recorded to the labels, and scores each method on the same matches.
@@ -107,6 +109,7 @@ pub fn evaluate(
         published,
         methods: methods.iter().map(of_method).collect(),
         unavailable,
+        identity: IdentityReport::of(&matched.sightings),
         intervals: estimators
             .map(|who| (who, Intervals::of(table.of(who))))
             .collect(),
@@ -174,6 +177,9 @@ impl Evaluation<'_> {
         let matches = match_image(&detections, labels, self.filter);
         matched.perceived += 1;
         matched.false_alarms += matches.false_alarms.len();
+        matched
+            .sightings
+            .push(self.sighting(frame, number, &matches));
         let taken: HashMap<usize, usize> = matches.pairs.iter().map(|&(d, o)| (o, d)).collect();
         let objects = labels.objects.iter().enumerate();
         for (at, object) in objects.filter(|(_, object)| self.filter.admits(object)) {
@@ -191,6 +197,51 @@ impl Evaluation<'_> {
                     target,
                 }
             }));
+        }
+    }
+}
+
+impl Evaluation<'_> {
+    /// What is scored of identities in one image: objects and tracks that are judged, and which is which.
+    fn sighting(&self, frame: &Recorded, number: u64, matches: &Matches) -> Sighting {
+        let camera = self.rig.camera(frame.camera).name.as_str();
+        let labels = self.truth.objects(number, camera).iter().enumerate();
+        let scored: Vec<_> = labels
+            .filter(|(_, object)| self.filter.admits(object))
+            .collect();
+        let matched = matches.pairs.iter().map(|&(detection, _)| detection);
+        let judged = matched.chain(matches.false_alarms.iter().copied());
+        // What has no place has no identity.
+        let judged: Vec<usize> = judged.filter(|&at| at < frame.tracks.len()).collect();
+        let place = |&(detection, object): &(usize, usize)| {
+            let truth = scored.iter().position(|&(at, _)| at == object)?;
+            let found = judged.iter().position(|&at| at == detection)?;
+            Some((truth, found))
+        };
+        Sighting {
+            camera: frame.camera,
+            number,
+            pairs: matches.pairs.iter().filter_map(place).collect(),
+            truths: scored
+                .iter()
+                .map(|(_, object)| SeenTruth {
+                    id: object.id.clone(),
+                    box_px: object.box_px,
+                    center: object.center,
+                })
+                .collect(),
+            found: judged
+                .iter()
+                .map(|&at| {
+                    let track = &frame.tracks[at];
+                    let located = &track.observed.located;
+                    SeenTrack {
+                        id: track.id.0,
+                        box_px: located.detection.box_px,
+                        center: located.location.position,
+                    }
+                })
+                .collect(),
         }
     }
 }

@@ -10,6 +10,7 @@ pub mod footprint;
 pub mod grouping;
 pub mod heading_score;
 pub mod honesty;
+pub mod identity;
 pub mod kitti;
 pub mod labelled_table;
 #[cfg(test)]
@@ -28,6 +29,7 @@ pub mod truth;
 pub use bootstrap::Intervals;
 pub use dataset_format::{DatasetFormat, OpenDatasetError};
 pub use evaluate::{Evaluation, LostImages, MethodUnderTest, evaluate};
+pub use identity::{IdentityReport, IdentityScore, Moment};
 pub use labelled_table::{LabelCounts, LabelledTableError, LabelledTableSpec, table_from_labels};
 pub use matching::TruthFilter;
 pub use plots::draw_position_curve;

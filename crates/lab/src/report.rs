@@ -6,6 +6,7 @@ pub(crate) mod markdown;
 use crate::{
     bootstrap::Intervals,
     heading_score::HeadingScore,
+    identity::IdentityReport,
     matching::TruthFilter,
     plots::{self, PlotError},
     sample::Estimator,
@@ -59,6 +60,8 @@ pub struct Report {
     pub methods: BTreeMap<Method, Figures>,
     /// Why methods were not tried, where they were not.
     pub unavailable: BTreeMap<Method, String>,
+    /// How well identities hold.
+    pub identity: IdentityReport,
     /// How far the main figures would move with other objects.
     pub intervals: BTreeMap<Estimator, Intervals>,
     /// `None` when nobody measured.

@@ -170,7 +170,7 @@ fn main() {
     let mut sink = RosSink(outlets.expect("announced"));
     let (free, suspended) = (Reader::start(&peer), Reader::start(&peer));
     let read_twice = |camera: &&str| node.readers_of(&format!("/roadwatch/{camera}/objects")) == 2;
-    while !CAMERAS.iter().all(|camera| read_twice(camera)) {
+    while !CAMERAS.iter().all(read_twice) {
         thread::park_timeout(PERIOD);
     }
     // Until both sides have matched, not only found each other.

@@ -251,7 +251,7 @@ impl BagSink {
     }
 
     fn finish_file(&mut self) -> Result<(), Box<dyn Error + Send + Sync>> {
-        let metadata = metadata::yaml(&self.topics, &[self.part()]);
+        let metadata = metadata::information(&self.topics, &[self.part()]);
         self.recording.finish(&metadata)?.close()?;
         Ok(())
     }
@@ -324,6 +324,12 @@ fn begin(
         Err(source) => return Err(BagError::File { path, source }),
     };
     let begun = Recording::begin(file, topics).and_then(|mut recording| {
+        // Should nobody finish it, readers of Jazzy still know by which version to read it.
+        let part = Part {
+            file_name: file_name(folder, number),
+            summary: recording.summary(),
+        };
+        recording.note(&metadata::information(topics, &[part]))?;
         recording.flush()?;
         Ok(recording)
     });

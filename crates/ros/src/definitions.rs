@@ -249,6 +249,8 @@ pub(crate) enum Count {
     One,
     /// A fixed number.
     Fixed(usize),
+    /// At most so many.
+    UpTo(usize),
     /// Any number.
     Any,
 }
@@ -262,6 +264,8 @@ pub(crate) struct Field {
     pub(crate) base: String,
     /// How many there are.
     pub(crate) count: Count,
+    /// The longest that a string may be; 0 when nothing bounds it.
+    pub(crate) longest_string: usize,
 }
 
 impl Field {
@@ -270,24 +274,31 @@ impl Field {
         self.base.contains('/')
     }
 
-    /// Reads `type name` or `type[n] name`, a default value after it is ignored; `None` for
-    /// comments, blank lines and constants.
+    /// Reads `type name`, where the type may be `type[n]`, `type[<=n]` or `type[]` and a string `string<=n`; a default
+    /// value after it is ignored. `None` for comments, blank lines and constants.
     fn parse(line: &str) -> Option<Self> {
-        let code = line.split('#').next().unwrap_or_default();
-        let mut words = code.split_whitespace();
-        let (ros_type, name) = (words.next()?, words.next()?);
-        if code.contains('=') {
+        let code = line.split('#').next().unwrap_or_default().trim();
+        let (ros_type, rest) = code.split_once(char::is_whitespace)?;
+        if rest.contains('=') {
             return None;
         }
-        let (base, count) = match ros_type.strip_suffix(']').and_then(|t| t.split_once('[')) {
+        let (element, count) = match ros_type.strip_suffix(']').and_then(|t| t.split_once('[')) {
             None => (ros_type, Count::One),
-            Some((base, "")) => (base, Count::Any),
-            Some((base, length)) => (base, Count::Fixed(length.parse().ok()?)),
+            Some((element, "")) => (element, Count::Any),
+            Some((element, length)) => match length.strip_prefix("<=") {
+                None => (element, Count::Fixed(length.parse().ok()?)),
+                Some(most) => (element, Count::UpTo(most.parse().ok()?)),
+            },
+        };
+        let (base, longest_string) = match element.split_once("<=") {
+            None => (element, 0),
+            Some((base, longest)) => (base, longest.parse().ok()?),
         };
         Some(Self {
-            name: name.to_owned(),
+            name: rest.split_whitespace().next()?.to_owned(),
             base: base.to_owned(),
             count,
+            longest_string,
         })
     }
 }
@@ -334,6 +345,17 @@ mod tests {
             ]
         );
         assert_eq!(text.matches(&"=".repeat(80)).count(), named.len());
+    }
+
+    #[test]
+    fn bounds_are_read_and_are_not_mistaken_for_constants() {
+        let field = |line| Field::parse(line).map(|f| (f.base, f.count, f.longest_string));
+        let text = || "string".to_owned();
+        assert_eq!(field("string<=5 a"), Some((text(), Count::One, 5)));
+        assert_eq!(field("string<=5[<=3] a"), Some((text(), Count::UpTo(3), 5)));
+        assert_eq!(field("string[2] a"), Some((text(), Count::Fixed(2), 0)));
+        assert_eq!(field("string A=b"), None);
+        assert_eq!(field("string A = b"), None);
     }
 
     #[test]

@@ -99,6 +99,32 @@ fn the_summary_counts_every_message_and_topic() {
 }
 
 #[test]
+fn each_file_says_what_is_in_it_in_the_words_of_the_yaml_file() {
+    let scratch = scratch();
+    let folder = scratch.path().join("drive");
+    record(&folder, LogTime::Stamp);
+    let file = read(&folder.join("drive_0.mcap"));
+    let index = mcap::Summary::read(&file)
+        .expect("readable")
+        .expect("a summary");
+    // One at the beginning, for recordings that are killed, and one at the end, which counts.
+    assert_eq!(index.metadata_indexes.len(), 2);
+    let record = mcap::read::metadata(&file, &index.metadata_indexes[1]).expect("a record");
+    let within = &record.metadata["serialized_metadata"];
+    // rosbag2 looks for the version at the top of it, and throws when it is not there.
+    assert!(within.starts_with("version: 5\n"), "{within}");
+    let indented: String = within.lines().map(|line| format!("  {line}\n")).collect();
+    let beside = read(&folder.join("metadata.yaml"));
+    let expected = format!("rosbag2_bagfile_information:\n{indented}");
+    assert_eq!(String::from_utf8_lossy(&beside), expected);
+    for channel in index.channels.values() {
+        let hash = &channel.metadata["topic_type_hash"];
+        assert!(hash.starts_with("RIHS01_"), "{}", channel.topic);
+        assert!(within.contains(hash.as_str()), "{}", channel.topic);
+    }
+}
+
+#[test]
 fn two_recordings_of_the_same_outputs_are_byte_identical() {
     let (one, other) = (scratch(), scratch());
     for scratch in [&one, &other] {

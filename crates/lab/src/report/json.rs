@@ -36,6 +36,7 @@ impl Report {
             "by": self.groups_json(figures_json),
             "recall_by": self.groups_json(|group| json!({"n": group.objects, "matched": group.found})),
             "heading": self.heading_json(),
+            "identity": self.identity,
             "latency_ms": self.latency.map(|latency| json!({"p50": latency.p50, "p99": latency.p99})),
         })
     }

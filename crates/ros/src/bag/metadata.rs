@@ -1,4 +1,7 @@
-//! `metadata.yaml` of a bag, layout version 5: the newest that Humble reads, and Jazzy reads it too.
+//! `metadata.yaml` of a bag, layout version 5: the newest that Humble writes, and later ones read it too.
+//!
+//! Readers go by the version and look at no other keys. From 7 on (Iron) they want `type_description_hash`; up to 8 such
+//! a file would do for Humble as well, from 9 on (Jazzy) it would not: QoS profiles are then a list, no longer a text.
 
 use crate::{
     topics::{Retention, Topic},
@@ -86,9 +89,18 @@ pub(super) struct Part {
     pub(super) summary: Summary,
 }
 
-/// The whole file about a bag of these parts. Its only times are those of messages, so that equal recordings have equal
-/// files.
+/// The whole file about a bag of these parts.
 pub(super) fn yaml(topics: &[Topic], parts: &[Part]) -> String {
+    let mut text = "rosbag2_bagfile_information:\n".to_owned();
+    for line in information(topics, parts).lines() {
+        text.push_str(&format!("  {line}\n"));
+    }
+    text
+}
+
+/// What the file says, without the key around it: so it also stands in each MCAP file, where Jazzy's reader fails on
+/// that key. The only times are those of messages, so that equal recordings have equal files.
+pub(super) fn information(topics: &[Topic], parts: &[Part]) -> String {
     let whole = Summary::of(parts);
     let mut topic_list = String::new();
     for (topic, count) in topics.iter().zip(&whole.messages) {
@@ -98,14 +110,14 @@ pub(super) fn yaml(topics: &[Topic], parts: &[Part]) -> String {
     let mut files = String::new();
     for Part { file_name, summary } in parts {
         let quoted = quoted(file_name);
-        paths.push_str(&format!("    - {quoted}\n"));
+        paths.push_str(&format!("  - {quoted}\n"));
         files.push_str(&format!(
-            "    - path: {quoted}
-      starting_time:
-        nanoseconds_since_epoch: {}
-      duration:
-        nanoseconds: {}
-      message_count: {}
+            "  - path: {quoted}
+    starting_time:
+      nanoseconds_since_epoch: {}
+    duration:
+      nanoseconds: {}
+    message_count: {}
 ",
             summary.start_ns(),
             summary.duration_ns(),
@@ -113,19 +125,18 @@ pub(super) fn yaml(topics: &[Topic], parts: &[Part]) -> String {
         ));
     }
     format!(
-        "rosbag2_bagfile_information:
-  version: 5
-  storage_identifier: mcap
-  duration:
-    nanoseconds: {}
-  starting_time:
-    nanoseconds_since_epoch: {}
-  message_count: {}
-  topics_with_message_count:
-{topic_list}  compression_format: \"\"
-  compression_mode: \"\"
-  relative_file_paths:
-{paths}  files:
+        "version: 5
+storage_identifier: mcap
+duration:
+  nanoseconds: {}
+starting_time:
+  nanoseconds_since_epoch: {}
+message_count: {}
+topics_with_message_count:
+{topic_list}compression_format: \"\"
+compression_mode: \"\"
+relative_file_paths:
+{paths}files:
 {files}",
         whole.duration_ns(),
         whole.start_ns(),
@@ -136,16 +147,17 @@ pub(super) fn yaml(topics: &[Topic], parts: &[Part]) -> String {
 fn push_topic(list: &mut String, topic: &Topic, count: u64) {
     let (name, ros_type) = (&topic.name, long_type_name(topic.kind.ros_type()));
     let qos = quoted(&offered_qos(topic));
-    // A key of later layouts, which readers of this one do not look at.
+    // A key of version 7, which `rosbags` reads in any version and `ros2 bag` not at all; Jazzy takes the hash from the
+    // channels of the MCAP file.
     let hash = type_hash(topic.kind.ros_type()).unwrap_or_default();
     list.push_str(&format!(
-        "    - topic_metadata:
-        name: {name}
-        type: {ros_type}
-        serialization_format: cdr
-        offered_qos_profiles: {qos}
-        type_description_hash: {hash}
-      message_count: {count}
+        "  - topic_metadata:
+      name: {name}
+      type: {ros_type}
+      serialization_format: cdr
+      offered_qos_profiles: {qos}
+      type_description_hash: {hash}
+    message_count: {count}
 "
     ));
 }

@@ -155,13 +155,23 @@ impl<W: Write + Seek> Recording<W> {
         if let Some(failure) = &self.failure {
             return Err(failure.as_error());
         }
+        self.note(metadata)?;
         let mut writer = self.writer.take().ok_or(RecordingError::Finished)?;
+        writer.finish()?;
+        Ok(writer.into_inner())
+    }
+
+    /// Says what the bag holds, as `rosbag2` does: the last word counts.
+    ///
+    /// # Errors
+    /// When it cannot be written, or the recording is finished.
+    pub(crate) fn note(&mut self, metadata: &str) -> Result<(), RecordingError> {
+        let writer = self.writer.as_mut().ok_or(RecordingError::Finished)?;
         writer.write_metadata(&Metadata {
             name: "rosbag2".to_owned(),
             metadata: [("serialized_metadata".to_owned(), metadata.to_owned())].into(),
         })?;
-        writer.finish()?;
-        Ok(writer.into_inner())
+        Ok(())
     }
 
     /// Puts what was taken into the file: a chunk of its own, which a killed recording keeps.

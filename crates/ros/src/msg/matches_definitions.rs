@@ -120,7 +120,7 @@ fn as_ros(format: &Format) -> Option<(String, Count)> {
         Format::TupleArray { content, size } => match as_ros(content)? {
             (name, Count::One) => Some((name, Count::Fixed(*size))),
             (name, Count::Fixed(inner)) => Some((name, Count::Fixed(inner * size))),
-            (_, Count::Any) => None,
+            (_, Count::UpTo(_) | Count::Any) => None,
         },
         _ => None,
     }
