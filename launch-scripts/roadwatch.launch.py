@@ -6,10 +6,16 @@ The daemon is one executable without an ament package, so it is found on PATH, o
 """
 
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, ExecuteProcess, OpaqueFunction
+from launch.actions import DeclareLaunchArgument, ExecuteProcess, OpaqueFunction, TimerAction
 from launch.substitutions import LaunchConfiguration
 
-# Name, default, meaning. What is empty is not passed on: the configuration decides.
+# What another start does not mend: done, wrong arguments, mistakes in the configuration.
+FINAL_EXIT_CODES = (0, 2, 78)
+RESPAWN_DELAY_SECS = 1.0
+# The daemon works off what it holds for at most ten seconds, and a second signal ends it at once.
+SIGTERM_TIMEOUT_SECS = "15"
+
+# Name, default, meaning. What is empty is not passed on: parameter file and configuration decide.
 ARGUMENTS = [
     ("config", None, "the configuration, a TOML file"),
     ("executable", "roadwatch", "the daemon, a name on PATH or a path"),
@@ -17,9 +23,9 @@ ARGUMENTS = [
     ("namespace", "", "namespace of the node, such as /vehicle"),
     ("params_file", "", "a YAML file of parameters"),
     ("log_level", "", "debug, info, warn or error"),
-    ("use_sim_time", "false", "take the time from /clock"),
-    ("autostart", "true", "configure and activate at once; false waits for a lifecycle manager"),
-    ("autoware", "false", "publish autoware_perception_msgs/DetectedObjects, too"),
+    ("use_sim_time", "", "true: take the time from /clock"),
+    ("autostart", "", "false: wait for a lifecycle manager to configure and activate it"),
+    ("autoware", "", "true: publish autoware_perception_msgs/DetectedObjects, too"),
     ("remap", "", "further rules FROM:=TO, with blanks between them"),
     ("respawn", "true", "start the daemon again when it ends by a failure"),
 ]
@@ -41,16 +47,33 @@ def command(values):
         ("autostart", "node.autostart"),
         ("autoware", "node.autoware"),
     ]:
-        ros += ["-p", f"{parameter}:={values[key]}"]
+        if values[key]:
+            ros += ["-p", f"{parameter}:={values[key]}"]
     if values["log_level"]:
         ros += ["--log-level", values["log_level"]]
     return [values["executable"], "run", values["config"], *ros]
 
 
+def daemon(cmd, respawn):
+    """The process. `respawn` of ExecuteProcess would start it again whatever it ended with."""
+
+    def start_again(event, context):
+        if context.is_shutdown or event.returncode in FINAL_EXIT_CODES:
+            return None
+        return [TimerAction(period=RESPAWN_DELAY_SECS, actions=[daemon(cmd, respawn)])]
+
+    return ExecuteProcess(
+        cmd=cmd,
+        output="screen",
+        sigterm_timeout=SIGTERM_TIMEOUT_SECS,
+        on_exit=start_again if respawn else None,
+    )
+
+
 def start(context):
     values = {name: LaunchConfiguration(name).perform(context) for name, _, _ in ARGUMENTS}
     respawn = values["respawn"].lower() == "true"
-    return [ExecuteProcess(cmd=command(values), output="screen", respawn=respawn, respawn_delay=1.0)]
+    return [daemon(command(values), respawn)]
 
 
 def generate_launch_description():

@@ -37,6 +37,7 @@ def install():
                 "ExecuteProcess",
                 "IncludeLaunchDescription",
                 "OpaqueFunction",
+                "TimerAction",
             ]
         },
         "launch.substitutions": {"LaunchConfiguration": LaunchConfiguration},

@@ -6,8 +6,10 @@ import re
 import shutil
 import subprocess
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
+from ruamel.yaml import YAML
 
 from stand_in import FOLDER, launch_file
 
@@ -34,23 +36,38 @@ def topics():
 
 
 def started(**given):
-    """The command line that the launch file starts."""
+    """What the launch file starts: a process, as the stand-in recorded it."""
     module = launch_file("roadwatch.launch.py")
     values = {name: default or "" for name, default, _ in module.ARGUMENTS} | given
     (process,) = module.start(values)
-    return process.named["cmd"], process.named["respawn"]
+    return process
+
+
+def parameters(text):
+    """What a file of parameters sets: dotted keys and values."""
+
+    def flat(tree, before=""):
+        for key, value in tree.items():
+            if isinstance(value, dict):
+                yield from flat(value, f"{before}{key}.")
+            else:
+                yield f"{before}{key}", value
+
+    return dict(flat(YAML(typ="safe").load(text)["/**"]["ros__parameters"]))
 
 
 def test_the_launch_file_passes_on_what_it_is_given():
-    command, respawn = started(
+    command = started(
         config="own.toml",
         name="eyes",
         namespace="/one",
         params_file="p.yaml",
         log_level="info",
+        use_sim_time="true",
+        autostart="false",
+        autoware="true",
         remap="~/scene/objects:=/objects /tf_static:=/one/tf_static",
-        respawn="false",
-    )
+    ).named["cmd"]
     assert command[:4] == ["roadwatch", "run", "own.toml", "--ros-args"]
     said = " ".join(command)
     for part in [
@@ -58,17 +75,40 @@ def test_the_launch_file_passes_on_what_it_is_given():
         "-r __ns:=/one",
         "-r ~/scene/objects:=/objects -r /tf_static:=/one/tf_static",
         "--params-file p.yaml",
-        "-p use_sim_time:=false -p node.autostart:=true",
+        "-p use_sim_time:=true -p node.autostart:=false -p node.autoware:=true",
         "--log-level info",
     ]:
         assert part in said
-    assert not respawn
 
 
-def test_the_daemon_understands_what_the_launch_file_starts():
-    command, respawn = started(config="config/demo.toml", executable=str(DAEMON), autoware="true")
-    assert respawn
-    checked = daemon("check", *command[2:])
+def test_what_is_not_given_is_left_to_the_configuration():
+    assert started(config="own.toml").named["cmd"] == ["roadwatch", "run", "own.toml", "--ros-args"]
+
+
+def test_the_daemon_is_started_again_after_failures_only():
+    on_exit = started(config="own.toml").named["on_exit"]
+
+    def after(code, is_shutdown=False):
+        return on_exit(SimpleNamespace(returncode=code), SimpleNamespace(is_shutdown=is_shutdown))
+
+    for failure in [1, 101, -9]:
+        (timer,) = after(failure)
+        (again,) = timer.named["actions"]
+        assert again.named["cmd"][:3] == ["roadwatch", "run", "own.toml"]
+        # And once more after that.
+        assert again.named["on_exit"]
+    for final in [0, 2, 78]:
+        assert after(final) is None
+    assert after(1, is_shutdown=True) is None
+    assert started(config="own.toml", respawn="false").named["on_exit"] is None
+
+
+@pytest.mark.parametrize(
+    "given", [{}, {"use_sim_time": "True", "autostart": "false", "autoware": "true", "log_level": "info"}]
+)
+def test_the_daemon_understands_what_the_launch_file_starts(given):
+    command = started(config="config/demo.toml", executable=str(DAEMON), name="eyes", namespace="/one", **given)
+    checked = daemon("check", *command.named["cmd"][2:])
     assert checked.returncode == 0, checked.stderr
 
 
@@ -93,22 +133,44 @@ def test_autoware_gets_its_message_on_its_topic():
     assert "autoware_perception_msgs/DetectedObjects" in graph.stdout
 
 
-def test_the_daemon_takes_every_parameter_of_the_file():
-    file = "launch-scripts/parameters.yaml"
-    checked = daemon("check", "config/demo.toml", "--ros-args", "--params-file", file)
-    assert checked.returncode == 0, checked.stderr
+def test_the_daemon_takes_every_parameter_of_the_file(tmp_path):
+    file = FOLDER / "parameters.yaml"
+    text = file.read_text()
+    # As it lies here, and with what stands behind a #.
+    everything = tmp_path / "everything.yaml"
+    everything.write_text(re.sub(r"^( {4,})# ", r"\1", text, flags=re.MULTILINE))
+    assert len(parameters(everything.read_text())) == len(parameters(text)) + 6
+    for one in [file, everything]:
+        checked = daemon("check", "config/demo.toml", "--ros-args", "--params-file", one)
+        assert checked.returncode == 0, checked.stderr
     # It would say so, were one of them unknown.
     wrong = daemon("check", "config/demo.toml", "--ros-args", "--params-file", file, "-p", "node.autowere:=true")
     assert "did you mean `autoware`" in wrong.stderr
 
 
-def test_the_layouts_show_topics_that_there_are(topics):
-    rviz = (FOLDER / "roadwatch.rviz").read_text()
-    shown = re.findall(r"Value: (/\S+)", rviz)
+def test_the_parameters_have_the_defaults_of_the_documentation():
+    documented = {}
+    table = None
+    for line in (ROOT / "docs/configuration.md").read_text().splitlines():
+        if heading := re.match(r"## `\[(\w+)\]`", line):
+            table = heading[1]
+        elif row := re.match(r"\| `(\w+)` \|[^|]*\| `([^`|]*)` \|", line):
+            documented.setdefault(f"{table}.{row[1]}", row[2])
+    given = parameters((FOLDER / "parameters.yaml").read_text())
+    given["node.use_sim_time"] = given.pop("use_sim_time")
+    assert given == {key: json.loads(documented[key]) for key in given}
+
+
+def test_rviz_shows_topics_that_there_are(topics):
+    manager = YAML(typ="safe").load(FOLDER / "roadwatch.rviz")["Visualization Manager"]
+    shown = [(one["Class"].split("/")[1], one["Topic"]["Value"]) for one in manager["Displays"] if "Topic" in one]
     assert len(shown) == 13
-    # image_transport adds the end.
-    shown = [f"{topic}/compressed" if topic.endswith("image_annotated") else topic for topic in shown]
-    assert set(shown) <= topics
+    # RViz takes the transport of images from the end of the name: what ends otherwise it takes for raw images.
+    assert {topic for kind, topic in shown} <= topics
+    assert all(topic.endswith("/compressed") for kind, topic in shown if kind == "Image")
+
+
+def test_foxglove_shows_topics_that_there_are(topics):
     layout = json.loads((FOLDER / "foxglove.json").read_text())
     scene = layout["configById"]["3D!scene"]
     images = [one["imageMode"]["imageTopic"] for name, one in layout["configById"].items() if name.startswith("Image!")]
@@ -128,3 +190,5 @@ def test_the_unit_is_one(tmp_path):
         ["systemd-analyze", "verify", tmp_path / "roadwatch.service"], capture_output=True, text=True
     )
     assert verified.returncode == 0, verified.stderr
+    # Of a key or a value that it does not know it only speaks.
+    assert "roadwatch.service" not in verified.stderr, verified.stderr

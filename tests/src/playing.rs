@@ -10,7 +10,7 @@ use roadwatch_lab::{Recorded, Recorder};
 use roadwatch_pipeline::{
     CameraCounts, NamedSink, Outcome, Overload, PipelineOptions, Stages, perceive::Perceiver, start,
 };
-use roadwatch_reid::LeftToRight;
+use roadwatch_reid::{ByCamera, Rule};
 use std::{
     sync::{Arc, Mutex, PoisonError},
     time::{Duration, Instant},
@@ -88,7 +88,10 @@ pub(crate) fn stages(
         perceiver: Perceiver {
             locators,
             rotation: None,
-            reidentifier: Box::new(LeftToRight::new(LeftToRight::DEFAULT_GROUND_MEMORY)),
+            reidentifier: Box::new(ByCamera::new(
+                Rule::LeftToRight,
+                ByCamera::DEFAULT_GROUND_MEMORY,
+            )),
         },
         sinks,
     }

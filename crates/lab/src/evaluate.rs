@@ -202,7 +202,7 @@ impl Evaluation<'_> {
 }
 
 impl Evaluation<'_> {
-    /// What is scored of identities in one image: objects and tracks that are judged, and which is which.
+    /// What is scored of identities in one image: objects, the tracks that were found of them, and which is which.
     fn sighting(&self, frame: &Recorded, number: u64, matches: &Matches) -> Sighting {
         let camera = self.rig.camera(frame.camera).name.as_str();
         let labels = self.truth.objects(number, camera).iter().enumerate();
@@ -210,9 +210,8 @@ impl Evaluation<'_> {
             .filter(|(_, object)| self.filter.admits(object))
             .collect();
         let matched = matches.pairs.iter().map(|&(detection, _)| detection);
-        let judged = matched.chain(matches.false_alarms.iter().copied());
-        // What has no place has no identity.
-        let judged: Vec<usize> = judged.filter(|&at| at < frame.tracks.len()).collect();
+        // What has no place has no identity, and false alarms are counted where detection is.
+        let judged: Vec<usize> = matched.filter(|&at| at < frame.tracks.len()).collect();
         let place = |&(detection, object): &(usize, usize)| {
             let truth = scored.iter().position(|&(at, _)| at == object)?;
             let found = judged.iter().position(|&at| at == detection)?;

@@ -1,8 +1,10 @@
 //! Who is who: the only memory, of objects and of the ground they stand on.
 //!
-//! [`LeftToRight`] is the paper's way (docs/method.md, section 7): objects keep their places in the row.
+//! [`ByCamera`] has the baselines (docs/method.md, section 7): the paper's places from left to right, and overlap.
 
+pub mod by_camera;
 mod ground_memory;
-pub mod left_to_right;
+pub mod rule;
 
-pub use left_to_right::LeftToRight;
+pub use by_camera::ByCamera;
+pub use rule::Rule;

@@ -16,7 +16,7 @@ use roadwatch_pipeline::{
     perceive::{Perceiver, Rotating},
     start,
 };
-use roadwatch_reid::LeftToRight;
+use roadwatch_reid::ByCamera;
 use roadwatch_ros::{RosError, RosNode};
 use std::{
     sync::{Arc, atomic::AtomicUsize},
@@ -136,7 +136,10 @@ impl Session {
             perceiver: Perceiver {
                 locators: self.locators,
                 rotation: self.rotation,
-                reidentifier: Box::new(LeftToRight::new(self.config.locate.ground_memory)),
+                reidentifier: Box::new(ByCamera::new(
+                    self.config.reid,
+                    self.config.locate.ground_memory,
+                )),
             },
             sinks,
         };

@@ -27,7 +27,7 @@ pub struct SeenTruth {
     pub center: Point<BaseLink>,
 }
 
-/// A published object that is judged, in one image.
+/// A published object that stands for a labelled one, in one image.
 #[derive(Debug, Clone, Copy)]
 pub struct SeenTrack {
     /// Its identity.

@@ -62,7 +62,7 @@ impl Report {
             return String::new();
         }
         let mut text = format!(
-            "## Identities\n\nOf objects that were found at least {MIN_TIMES_FOUND} times. Found under more than one identity \
+            "## Identities\n\nOf objects that were found at least {MIN_TIMES_FOUND} times; false alarms are counted above. Found under more than one identity \
              at once: {}.\n\n\
              | | objects in all moments | IDF1 | HOTA | DetA | AssA | MOTA | switches | fragmentations |\n\
              |---|---|---|---|---|---|---|---|---|\n",

@@ -7,7 +7,7 @@ use roadwatch_locate::{
     HoldOptions, HullSpec, LocationTable, LocatorError, LocatorOptions, MountNoise, QueryDistance,
     SizeGroup, SizeStatistic, SplitMode, Standing, TableOptions, Weight, build_table,
 };
-use roadwatch_reid::LeftToRight;
+use roadwatch_reid::ByCamera;
 use std::{sync::Arc, time::Duration};
 
 /// The class that look-up tables are built for: the one whose size is known best.
@@ -128,7 +128,7 @@ pub(super) fn read(locate: &Reader<'_, '_>) -> LocateConfig {
         options,
         grid,
         ground_memory: ground_memory
-            .map_or(LeftToRight::DEFAULT_GROUND_MEMORY, Duration::from_secs_f64),
+            .map_or(ByCamera::DEFAULT_GROUND_MEMORY, Duration::from_secs_f64),
     }
 }
 

@@ -33,6 +33,7 @@ pub use rotation::RotationConfig;
 use document::Document;
 use reader::Reader;
 use roadwatch_pipeline::PipelineOptions;
+use roadwatch_reid::Rule;
 use std::{fs, path::Path, time::Duration};
 
 /// Longer than this no round is worth waiting for, seconds.
@@ -57,6 +58,8 @@ pub struct Config {
     pub rotation: Option<RotationConfig>,
     /// `[scene] timeout_secs`.
     pub scene_timeout: Duration,
+    /// `[reid] method`.
+    pub reid: Rule,
     /// `[enabled]`: whether each camera, in order of their ids, is looked at from the start.
     pub enabled: Vec<bool>,
     /// `[diagnostics]`.
@@ -112,6 +115,7 @@ fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<DatasetChoice>) -> C
         "locate",
         "rotation",
         "scene",
+        "reid",
         "enabled",
         "diagnostics",
     ];
@@ -123,6 +127,7 @@ fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<DatasetChoice>) -> C
         locate,
         rotation,
         scene,
+        reid,
         enabled,
         diagnostics,
     ] = &sections;
@@ -140,6 +145,7 @@ fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<DatasetChoice>) -> C
         notes,
         node: node::read(node),
         detector: detector::read(detector),
+        reid: reid.choice("method", &Rule::ALL).unwrap_or_default(),
         diagnostics: diagnostics::read(diagnostics),
         enabled: read_enabled(enabled, rig_config.as_ref()),
         rig: rig_config,

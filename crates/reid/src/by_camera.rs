@@ -1,6 +1,6 @@
-//! The paper's baseline: the n-th object from the left keeps the n-th identity.
+//! Identities of each camera by itself, without motion: the paper's order from left to right, and overlap.
 
-use crate::ground_memory::GroundMemory;
+use crate::{ground_memory::GroundMemory, rule::Rule};
 use nalgebra::Matrix2;
 use roadwatch_core::{
     BoxPx, CameraId, Detection, Frame, Heading, KeptHeading, Known, Location, ObjectClass,
@@ -8,8 +8,6 @@ use roadwatch_core::{
 };
 use std::{collections::BTreeMap, time::Duration};
 
-/// Identities of one camera; no frame has more objects. In tens, so that people can read an identity.
-const PLACES: u64 = 10_000;
 /// How fast an object may move against the vehicle, metres per second: a difference of two speeds in city traffic.
 const SPEED_STD_M_S: f64 = 5.0;
 /// Share of an estimate's variance that is new in the next frame: box noise, not the object's unknown size.
@@ -22,25 +20,29 @@ const MOST_APART_STD_DEVS: f64 = 3.0;
 /// at some twenty degrees per second.
 const TURN_STD_RAD_S: f64 = 0.5;
 
-/// Sorts each camera's objects from left to right and gives the n-th the n-th identity (section E of the
-/// paper, Fig. 8).
+/// Gives each camera's objects their places in a row by a [`Rule`], and remembers what stood there.
 ///
-/// An identity is `camera * 10000 + place`, both counted from 0 (camera 2's fourth from the left is 20003):
-/// the same in every run, and never the same for two cameras. It says nothing about who somebody is: when a car enters at the left, everybody
-/// moves on by one. Objects side by side keep the order in which they come.
-///
-/// Remembered are the objects of each camera's last frame, no more. Places are counted among all
-/// detections, also those that got no location.
+/// An identity is a number of the camera's plus the place (camera 2's fourth from the left is 20003): the same in every
+/// run, and never the same for two cameras. Places are counted among all detections, also those that got no location.
 #[derive(Debug)]
-pub struct LeftToRight {
-    /// By camera and place.
-    rows: BTreeMap<CameraId, BTreeMap<usize, Remembered>>,
+pub struct ByCamera {
+    rule: Rule,
+    rows: BTreeMap<CameraId, Row>,
     ground: GroundMemory,
+}
+
+/// What is remembered of one camera.
+#[derive(Debug, Default)]
+struct Row {
+    places: BTreeMap<usize, Remembered>,
+    /// The first place that nobody ever had.
+    next: usize,
 }
 
 /// One place of a row.
 #[derive(Clone, Debug)]
 struct Remembered {
+    seen_at: Timestamp,
     class: ObjectClass,
     box_px: BoxPx,
     /// Measured, never held.
@@ -55,7 +57,33 @@ struct Measured {
     at: Timestamp,
 }
 
-impl LeftToRight {
+impl ByCamera {
+    /// The place of each object, in the order given.
+    fn places(
+        &self,
+        camera: CameraId,
+        objects: &[(&BoxPx, &ObjectClass)],
+        at: Timestamp,
+    ) -> Vec<usize> {
+        let Some(row) = self.rows.get(&camera) else {
+            return self.rule.places(objects, &[], 0);
+        };
+        // A recording that begins anew takes time back: what is still to come is no memory.
+        let is_known = |one: &Remembered| {
+            one.seen_at <= at && at.saturating_since(one.seen_at) <= self.rule.lasts()
+        };
+        let known = row.places.iter().filter(|(_, one)| is_known(one));
+        let known: Vec<_> = known
+            .map(|(&place, one)| (place, &one.box_px, &one.class))
+            .collect();
+        self.rule.places(objects, &known, row.next)
+    }
+
+    /// What stands for an object of one camera everywhere.
+    fn identity(&self, camera: CameraId, place: usize) -> TrackId {
+        TrackId(u64::from(camera.0) * self.rule.most_places() + place as u64)
+    }
+
     /// About how long the slopes of the ground are remembered by default: a grade lasts a few car lengths, and
     /// so do two seconds of city traffic.
     pub const DEFAULT_GROUND_MEMORY: Duration = Duration::from_secs(2);
@@ -63,8 +91,9 @@ impl LeftToRight {
     /// Remembers nobody yet. What objects say of the ground is remembered for about `ground_memory`, not at all
     /// when that is zero.
     #[must_use]
-    pub fn new(ground_memory: Duration) -> Self {
+    pub fn new(rule: Rule, ground_memory: Duration) -> Self {
         Self {
+            rule,
             rows: BTreeMap::new(),
             ground: GroundMemory::new(ground_memory),
         }
@@ -76,7 +105,7 @@ impl LeftToRight {
         place: usize,
         class: &ObjectClass,
     ) -> Option<&Remembered> {
-        let one = self.rows.get(&camera)?.get(&place)?;
+        let one = self.rows.get(&camera)?.places.get(&place)?;
         (one.class == *class).then_some(one)
     }
 
@@ -121,6 +150,7 @@ impl LeftToRight {
             })
         };
         Remembered {
+            seen_at: at,
             class: class.clone(),
             box_px: seen.located.detection.box_px,
             location: measured,
@@ -134,20 +164,24 @@ impl LeftToRight {
     }
 }
 
-impl Reidentifier for LeftToRight {
-    /// The n-th detection from the left gets what the n-th object of the camera's last frame left behind;
-    /// `None` when there was none, when it was of another class, or when it never had a location.
+impl Reidentifier for ByCamera {
+    /// Each detection gets what the object at its place left behind; `None` when there was none, when it was of another
+    /// class, or when it never had a location.
     fn recall(&self, seen: &PerFrame<Detection>) -> Vec<Known> {
         let Frame {
             camera,
             captured_at,
             ..
         } = seen.frame;
-        let order = places(seen.items.iter().map(|detection| &detection.box_px));
+        let objects: Vec<_> = seen
+            .items
+            .iter()
+            .map(|one| (&one.box_px, &one.class))
+            .collect();
+        let order = self.places(camera, &objects, captured_at);
         let ground = self.ground.at(captured_at);
         let prior = |detection: &Detection, place: usize| {
             let before = self.remembered(camera, place, &detection.class)?;
-            // A recording that begins anew takes time back: what is still to come is no memory.
             let measured = before
                 .location
                 .as_ref()
@@ -164,18 +198,21 @@ impl Reidentifier for LeftToRight {
         };
         let known = |(detection, place): (&Detection, usize)| Known {
             object: prior(detection, place),
-            slopes: ground.without((camera, identity(camera, place))),
+            slopes: ground.without((camera, self.identity(camera, place))),
         };
         seen.items.iter().zip(order).map(known).collect()
     }
 
     /// Items come back in the order they were given in.
     fn commit(&mut self, mut seen: PerFrame<Oriented>, unlocated: &[Detection]) -> PerFrame<Track> {
-        let camera = seen.frame.camera;
-        let located = seen.items.iter().map(|one| &one.located.detection.box_px);
-        let others = unlocated.iter().map(|detection| &detection.box_px);
+        let (camera, at) = (seen.frame.camera, seen.frame.captured_at);
+        let located = seen.items.iter().map(|one| &one.located.detection);
+        let objects: Vec<_> = located
+            .chain(unlocated)
+            .map(|one| (&one.box_px, &one.class))
+            .collect();
         // Of the places of all, those of the located come first.
-        let order = places(located.chain(others));
+        let order = self.places(camera, &objects, at);
         for (one, &place) in seen.items.iter_mut().zip(&order) {
             self.drop_foreign_heading(one, (camera, place), seen.frame.captured_at);
         }
@@ -185,18 +222,24 @@ impl Reidentifier for LeftToRight {
                 self.remember(one, camera, place, seen.frame.captured_at),
             )
         };
-        let row = seen.items.iter().zip(&order).map(remember).collect();
-        self.rows.insert(camera, row);
-        let at = seen.frame.captured_at;
+        let remembered: Vec<_> = seen.items.iter().zip(&order).map(remember).collect();
+        let row = self.rows.entry(camera).or_default();
+        let lasts = self.rule.lasts();
+        row.places
+            .retain(|_, one| one.seen_at < at && at.saturating_since(one.seen_at) <= lasts);
+        row.places.extend(remembered);
+        row.next = row
+            .next
+            .max(order.iter().max().map_or(0, |place| place + 1));
         self.ground.forget(at);
         for (one, &place) in seen.items.iter().zip(&order) {
             if let Some(reading) = &one.located.location.ground {
-                self.ground
-                    .learn((camera, identity(camera, place)), reading, at);
+                let who = (camera, self.identity(camera, place));
+                self.ground.learn(who, reading, at);
             }
         }
         let track = |(observed, place)| Track {
-            id: identity(camera, place),
+            id: self.identity(camera, place),
             observed,
         };
         PerFrame {
@@ -232,21 +275,4 @@ fn is_near(here: &Location, before: &Location, age: Duration) -> bool {
         + Matrix2::identity() * (moved_m * moved_m + LEAST_APART_M * LEAST_APART_M);
     let inverse = spread.try_inverse().unwrap_or_else(Matrix2::zeros);
     apart.dot(&(inverse * apart)) < MOST_APART_STD_DEVS * MOST_APART_STD_DEVS
-}
-
-/// The identity of a place in a camera's row.
-fn identity(camera: CameraId, place: usize) -> TrackId {
-    TrackId(u64::from(camera.0) * PLACES + place as u64)
-}
-
-/// Each box's place from the left, by its middle; equal middles keep their order.
-fn places<'a>(boxes: impl Iterator<Item = &'a BoxPx>) -> Vec<usize> {
-    let middles: Vec<f64> = boxes.map(|box_px| box_px.center().x).collect();
-    let mut from_left: Vec<usize> = (0..middles.len()).collect();
-    from_left.sort_by(|&a, &b| middles[a].total_cmp(&middles[b]));
-    let mut places = vec![0; from_left.len()];
-    for (place, item) in from_left.into_iter().enumerate() {
-        places[item] = place;
-    }
-    places
 }

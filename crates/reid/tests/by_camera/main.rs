@@ -8,7 +8,7 @@ use roadwatch_core::{
     SizeLwh, SlopeEvidence, Timestamp, TrackId,
     space::{Covariance, Point},
 };
-use roadwatch_reid::LeftToRight;
+use roadwatch_reid::{ByCamera, Rule};
 use std::{
     collections::BTreeSet,
     time::{Duration, Instant},
@@ -82,12 +82,7 @@ fn cars(lefts_px: &[f32]) -> Vec<Detection> {
 }
 
 /// Commits detections, each measured at its own left edge as metres.
-fn commit(
-    reid: &mut LeftToRight,
-    camera: u8,
-    millis: i64,
-    detections: &[Detection],
-) -> Vec<TrackId> {
+fn commit(reid: &mut ByCamera, camera: u8, millis: i64, detections: &[Detection]) -> Vec<TrackId> {
     let locate = |one: &Detection| oriented(one.clone(), measured(one.box_px.x_min.into()));
     let tracks = reid.commit(
         PerFrame {
@@ -105,12 +100,12 @@ fn commit(
 }
 
 /// Remembers nobody yet.
-fn left_to_right() -> LeftToRight {
-    LeftToRight::new(LeftToRight::DEFAULT_GROUND_MEMORY)
+fn left_to_right() -> ByCamera {
+    ByCamera::new(Rule::LeftToRight, ByCamera::DEFAULT_GROUND_MEMORY)
 }
 
 /// What is remembered of the objects themselves.
-fn priors(reid: &LeftToRight, seen: &PerFrame<Detection>) -> Vec<Option<Prior>> {
+fn priors(reid: &ByCamera, seen: &PerFrame<Detection>) -> Vec<Option<Prior>> {
     let known = reid.recall(seen).into_iter();
     known.map(|known| known.object).collect()
 }
@@ -272,14 +267,11 @@ fn a_heading_is_recalled_only_where_the_object_was() {
 }
 
 #[test]
-fn an_empty_frame_forgets_everybody_and_a_stamp_from_the_past_is_no_age() {
+fn an_empty_frame_forgets_everybody_and_what_is_still_to_come_is_no_memory() {
     let mut reid = left_to_right();
     commit(&mut reid, 0, 1_000, &cars(&[100.0]));
     let early = priors(&reid, &seen(0, 900, &cars(&[100.0])));
-    assert_eq!(
-        early[0].as_ref().map(|prior| prior.age),
-        Some(Duration::ZERO)
-    );
+    assert_eq!(early, [None]);
     commit(&mut reid, 0, 1_100, &[]);
     assert_eq!(priors(&reid, &seen(0, 1_200, &cars(&[100.0]))), [None]);
 }
@@ -344,4 +336,35 @@ fn what_got_no_location_keeps_its_place_in_the_row() {
         .map(|prior| prior.as_ref().map(|prior| prior.location.range_m))
         .collect();
     assert_eq!(places, [None, Some(200.0), Some(300.0)]);
+}
+
+#[test]
+fn by_overlap_a_car_keeps_its_identity_when_another_enters_and_when_it_is_missed() {
+    let mut reid = ByCamera::new(Rule::Overlap, ByCamera::DEFAULT_GROUND_MEMORY);
+    let [old] = commit(&mut reid, 2, 0, &cars(&[100.0]))[..] else {
+        panic!("one car");
+    };
+    let both = commit(&mut reid, 2, 100, &cars(&[20.0, 102.0]));
+    assert_eq!(both[1], old);
+    assert_ne!(both[0], old);
+    assert_eq!(commit(&mut reid, 2, 200, &cars(&[21.0])), both[..1]);
+    assert_eq!(commit(&mut reid, 2, 300, &cars(&[103.0])), [old]);
+    // After a second without it, it is somebody new, whose identity nobody ever had.
+    let late = commit(&mut reid, 2, 1500, &cars(&[103.0]));
+    assert!(!late.contains(&old) && !both.contains(&late[0]));
+    // Another camera's are others.
+    assert_ne!(commit(&mut reid, 3, 1500, &cars(&[103.0])), late);
+}
+
+#[test]
+fn by_overlap_what_is_remembered_follows_the_object() {
+    let mut reid = ByCamera::new(Rule::Overlap, ByCamera::DEFAULT_GROUND_MEMORY);
+    commit(&mut reid, 0, 0, &cars(&[100.0]));
+    let now = seen(0, 100, &cars(&[20.0, 102.0]));
+    let priors = priors(&reid, &now);
+    assert_eq!(remembered_x_m(&priors[0]), None);
+    assert_eq!(remembered_x_m(&priors[1]), Some(100.0));
+    // Time that goes back is another recording.
+    let before = seen(0, -5000, &cars(&[101.0]));
+    assert_eq!(reid.recall(&before)[0].object, None);
 }
