@@ -71,9 +71,8 @@ impl Report {
         for (name, score) in [("rig", &identity.rig), ("per camera", &identity.per_camera)] {
             let shares = [score.idf1, score.hota, score.deta, score.assa, score.mota];
             let [idf1, hota, deta, assa, mota] = shares.map(percent);
-            let counts = [score.switches, score.fragmentations].map(|count| count.to_string());
-            let [switches, fragmentations] = counts;
-            let objects = score.object_frames.to_string();
+            let counts = [score.object_frames, score.switches, score.fragmentations];
+            let [objects, switches, fragmentations] = counts.map(|count| count.to_string());
             let name = name.to_owned();
             text.push_str(&row([
                 name,
