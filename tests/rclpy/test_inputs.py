@@ -7,7 +7,7 @@ import pytest
 
 from daemon import ROOT
 from images import SECOND, clip, compressed, raw
-from messages import OBJECTS, PER_CAMERA, nanos, stamps
+from messages import DELETEALL, OBJECTS, PER_CAMERA, nanos, stamps
 
 DETECTIONS = PER_CAMERA["detections_2d"]
 IMAGE, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
@@ -18,6 +18,8 @@ TOPICS = {
     "left": "/sensors/left/image_raw",
     "right": "/sensors/right/image_raw",
 }
+# One camera has a CameraInfo beside its images.
+INFO_CAMERA, INFO = "left", "/sensors/left/camera_info"
 # Longer than one image takes on a slow machine.
 ANSWER_SECONDS = 5
 # Warnings of one kind are said once in five seconds.
@@ -25,6 +27,8 @@ WARNING_SECONDS = 8
 # A frame's time to the nanosecond, as no clip has it.
 PERIOD_NS = 83_333_337
 WARN = 30
+# Of diagnostics.
+STALE = 3
 
 
 def rig_tables() -> str:
@@ -33,6 +37,8 @@ def rig_tables() -> str:
     for camera in rig["camera"]:
         if camera["name"] in TOPICS:
             keys = {**camera, "topic": TOPICS[camera["name"]]}
+            if camera["name"] == INFO_CAMERA:
+                keys["camera_info_topic"] = INFO
             lines = [f"{key} = {value!r}" for key, value in keys.items()]
             tables.append("\n".join(["[[camera]]", *lines]))
     return "\n\n".join(tables)
@@ -244,3 +250,60 @@ def test_a_second_publisher_is_left_out(daemon, cameras, rosout, node):
         return in_nanos(message)
 
     assert_refused(daemon, right, rosout, spoil, "two publishers", TOPICS["right"])
+
+
+def camera_info(name: str, focal_share: float = 1.0) -> dict:
+    """What the rig says of a camera, with another focal length if need be."""
+    rig = tomllib.loads((ROOT / "demo/rig.toml").read_text())
+    (camera,) = [one for one in rig["camera"] if one["name"] == name]
+    fx, fy = (camera[key] * focal_share for key in ("fx", "fy"))
+    return {
+        "header": {"frame_id": f"{name}_optical_frame"},
+        "height": camera["height"],
+        "width": camera["width"],
+        "distortion_model": "plumb_bob",
+        "k": [fx, 0.0, camera["cx"], 0.0, fy, camera["cy"], 0.0, 0.0, 1.0],
+    }
+
+
+def test_nothing_is_made_of_images_while_their_camera_info_contradicts_the_rig(cameras, rosout, node):
+    camera, frame = cameras[INFO_CAMERA], clip(INFO_CAMERA, 1)[0]
+    infos = node.publisher(INFO, "sensor_msgs/msg/CameraInfo")
+    assert node.wait(lambda: infos.matched() == 1, 10)
+
+    def refused():
+        infos.publish(camera_info(INFO_CAMERA, 1.1))
+        stamp = camera.stamp()
+        camera.publisher.publish(camera.message(frame, stamp))
+        return not camera.is_answered(stamp, 0.5) and warned(rosout, INFO, "contradicts the rig", "fx is")
+
+    assert node.wait(refused, WARNING_SECONDS)
+
+    def answered():
+        infos.publish(camera_info(INFO_CAMERA))
+        stamp = camera.stamp()
+        camera.publisher.publish(camera.message(frame, stamp))
+        return camera.is_answered(stamp, 0.5)
+
+    assert node.wait(answered, 10), "the rig's own calibration is refused"
+
+
+def test_a_camera_that_falls_silent_is_stale_and_its_markers_are_taken_away(cameras, node):
+    camera, frame = cameras["right"], clip("right", 1)[0]
+    markers = node.subscribe("/roadwatch/right/markers", PER_CAMERA["markers"])
+    diagnostics = node.subscribe("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
+    assert node.wait(lambda: markers.matched() == 1 and diagnostics.matched() == 1, 10)
+    camera.show(frame)
+    shown = len(markers.messages)
+
+    def stale():
+        statuses = [one for array in diagnostics.messages[-1:] for one in array.status]
+        return any(one.name == "roadwatch: camera right" and one.level == STALE for one in statuses)
+
+    assert node.wait(stale, 6)
+    assert node.wait(lambda: len(markers.messages) > shown, 2)
+    (last,) = markers.messages[shown:]
+    assert [marker.action for marker in last.markers] == [DELETEALL]
+    # And it is well again with the next image.
+    camera.show(frame)
+    assert node.wait(lambda: not stale(), 6)

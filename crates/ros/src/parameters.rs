@@ -105,6 +105,11 @@ impl Parameter {
         }
     }
 
+    fn write(&self, value: &ParameterValue) -> Result<(), String> {
+        let write = self.write.as_ref().map_err(Clone::clone)?;
+        write(value)
+    }
+
     fn descriptor(&self) -> raw::ParameterDescriptor {
         let value = (self.read)();
         let mut descriptor = raw::ParameterDescriptor {
@@ -210,13 +215,21 @@ impl Parameters {
             Ok((parameter, parameter.check(value)?))
         });
         let checked: Vec<_> = checked.collect::<Result<_, String>>()?;
-        for (parameter, value) in checked {
-            if let Ok(write) = &parameter.write {
-                let name = &parameter.name;
-                write(&value).map_err(|why| format!("parameter `{name}`: {why}"))?;
-                tracing::info!(parameter = parameter.name, ?value, "parameter set");
-                (self.on_change)(&parameter.name, value);
+        let mut before = Vec::new();
+        for (parameter, value) in &checked {
+            let value_before = (parameter.read)();
+            if let Err(why) = parameter.write(value) {
+                for (parameter, value) in before {
+                    // It was accepted before.
+                    Parameter::write(parameter, &value).ok();
+                }
+                return Err(format!("parameter `{}`: {why}", parameter.name));
             }
+            before.push((*parameter, value_before));
+        }
+        for (parameter, value) in checked {
+            tracing::info!(parameter = parameter.name, ?value, "parameter set");
+            (self.on_change)(&parameter.name, value);
         }
         Ok(())
     }

@@ -89,6 +89,44 @@ fn all_or_none_are_set_together() {
 }
 
 #[test]
+fn what_was_set_before_one_that_refuses_is_taken_back() {
+    let threshold = Arc::new(Mutex::new(0.25));
+    let (read, write) = (Arc::clone(&threshold), Arc::clone(&threshold));
+    let number = move || Double(*read.lock().expect("value"));
+    let set_number = move |value: &ParameterValue| {
+        if let Double(number) = value {
+            *write.lock().expect("value") = *number;
+        }
+        Ok(())
+    };
+    let refusing = |_: &ParameterValue| Err("no such class".to_owned());
+    let told = Arc::new(Mutex::new(0));
+    let hearing = Arc::clone(&told);
+    let parameters = Parameters::new(
+        vec![
+            Parameter::live("a", "", number, set_number),
+            Parameter::live("b", "", || Text(String::new()), refusing),
+        ],
+        Box::new(move |_, _| *hearing.lock().expect("count") += 1),
+    );
+    let both = vec![
+        ("a".to_owned(), Double(0.9)),
+        ("b".to_owned(), Text("unicorn".to_owned())),
+    ];
+    assert_eq!(
+        parameters.set(both),
+        Err("parameter `b`: no such class".to_owned())
+    );
+    assert_eq!(
+        (
+            *threshold.lock().expect("value"),
+            *told.lock().expect("count")
+        ),
+        (0.25, 0)
+    );
+}
+
+#[test]
 fn names_are_listed_by_prefix_and_depth() {
     let (parameters, _told) = parameters();
     let listed = |prefixes: &[&str], depth| {
