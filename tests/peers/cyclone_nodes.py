@@ -11,47 +11,18 @@ import argparse
 import json
 import sys
 import time
-from dataclasses import dataclass
 
 import loopback  # noqa: F401
 
 from cyclonedds.core import Policy, Qos
 from cyclonedds.domain import DomainParticipant
-from cyclonedds.idl import IdlStruct
-from cyclonedds.idl.annotations import final
-from cyclonedds.idl.types import array, sequence, uint8
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
+import ros_idl
+
 POLL_SECONDS = 0.02
-
-
-def announced(gid_length):
-    """The type `rmw_dds_common/ParticipantEntitiesInfo` with ids of that length."""
-
-    @dataclass
-    @final
-    class Gid(IdlStruct, typename="rmw_dds_common::msg::dds_::Gid_"):
-        data: array[uint8, gid_length]
-
-    @dataclass
-    @final
-    class NodeEntitiesInfo(IdlStruct, typename="rmw_dds_common::msg::dds_::NodeEntitiesInfo_"):
-        node_namespace: str
-        node_name: str
-        reader_gid_seq: sequence[Gid]
-        writer_gid_seq: sequence[Gid]
-
-    @dataclass
-    @final
-    class ParticipantEntitiesInfo(
-        IdlStruct, typename="rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"
-    ):
-        gid: Gid
-        node_entities_info_seq: sequence[NodeEntitiesInfo]
-
-    return ParticipantEntitiesInfo
 
 
 def main():
@@ -63,7 +34,7 @@ def main():
     args = parser.parse_args()
 
     participant = DomainParticipant(args.domain)
-    topic = Topic(participant, "ros_discovery_info", announced(args.gid_length))
+    topic = Topic(participant, "ros_discovery_info", ros_idl.participant_entities_info(args.gid_length))
     qos = Qos(
         Policy.Reliability.Reliable(duration(seconds=1)),
         Policy.History.KeepLast(1),

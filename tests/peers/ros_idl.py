@@ -617,29 +617,34 @@ class GetAvailableTransitionsResponse(
     available_transitions: sequence[TransitionDescription]
 
 
-@dataclass
-@final
-class Gid(IdlStruct, typename="rmw_dds_common::msg::dds_::Gid_"):
-    data: array[uint8, 16]
+def participant_entities_info(gid_length):
+    """Which nodes a participant has; ids have 24 bytes until Humble and 16 from Iron on."""
+
+    @dataclass
+    @final
+    class Gid(IdlStruct, typename="rmw_dds_common::msg::dds_::Gid_"):
+        data: array[uint8, gid_length]
+
+    @dataclass
+    @final
+    class NodeEntitiesInfo(IdlStruct, typename="rmw_dds_common::msg::dds_::NodeEntitiesInfo_"):
+        node_namespace: str
+        node_name: str
+        reader_gid_seq: sequence[Gid]
+        writer_gid_seq: sequence[Gid]
+
+    @dataclass
+    @final
+    class ParticipantEntitiesInfo(
+        IdlStruct, typename="rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"
+    ):
+        gid: Gid
+        node_entities_info_seq: sequence[NodeEntitiesInfo]
+
+    return ParticipantEntitiesInfo
 
 
-@dataclass
-@final
-class NodeEntitiesInfo(IdlStruct, typename="rmw_dds_common::msg::dds_::NodeEntitiesInfo_"):
-    node_namespace: str
-    node_name: str
-    reader_gid_seq: sequence[Gid]
-    writer_gid_seq: sequence[Gid]
-
-
-@dataclass
-@final
-class ParticipantEntitiesInfo(
-    IdlStruct, typename="rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"
-):
-    gid: Gid
-    node_entities_info_seq: sequence[NodeEntitiesInfo]
-
+ParticipantEntitiesInfo = participant_entities_info(16)
 
 # The last part of a topic's name to its type.
 TYPES = {

@@ -11,6 +11,7 @@ use opencv::{
     },
 };
 use roadwatch_core::{DecodeError, DecodeImage, ImageSize, Pixels};
+use std::borrow::Cow;
 
 /// How the bytes of a pixel become blue, green, red.
 #[derive(Clone, Copy)]
@@ -81,7 +82,10 @@ impl RawImage {
         };
         let rows = self.rows(bytes_per_pixel)?;
         let code = match conversion {
-            Conversion::None => return Pixels::new(self.size, rows).map_err(|e| e.to_string()),
+            Conversion::None => {
+                let pixels = Pixels::new(self.size, rows.into_owned());
+                return pixels.map_err(|error| error.to_string());
+            }
             Conversion::Color(code) => return self.by_open_cv(&rows, bytes_per_pixel, code),
             Conversion::Grey16 => COLOR_GRAY2BGR,
         };
@@ -91,7 +95,7 @@ impl RawImage {
     }
 
     /// The rows without what pads them.
-    fn rows(&self, bytes_per_pixel: usize) -> Result<Vec<u8>, String> {
+    fn rows(&self, bytes_per_pixel: usize) -> Result<Cow<'_, [u8]>, String> {
         let (width, height) = (self.size.width_px as usize, self.size.height_px as usize);
         let (row, step) = (width * bytes_per_pixel, self.step);
         if step < row {
@@ -108,7 +112,7 @@ impl RawImage {
             ));
         }
         if step == row {
-            return Ok(self.bytes[..needed].to_vec());
+            return Ok(Cow::Borrowed(&self.bytes[..needed]));
         }
         let rows = self.bytes[..needed].chunks_exact(step);
         Ok(rows.flat_map(|padded| &padded[..row]).copied().collect())

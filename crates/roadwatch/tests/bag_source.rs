@@ -48,17 +48,19 @@ fn record(folder: &Path) {
     );
 }
 
+/// The same, and the demo fed by them.
+fn replayed(folder: &Path) -> String {
+    record(folder);
+    demo(folder, fed_by(&folder.join("recorded"), image_topic))
+}
+
 #[test]
 fn replaying_a_bag_twice_gives_the_same_bytes_and_the_recorded_stamps() {
     if runtime_library().is_none() {
         return;
     }
     let folder = tempfile::tempdir().expect("a folder");
-    record(folder.path());
-    let config = demo(
-        folder.path(),
-        fed_by(&folder.path().join("recorded"), image_topic),
-    );
+    let config = replayed(folder.path());
     let mut bags = Vec::new();
     for run in ["one", "two"] {
         let bag = folder.path().join(run).join("bag");
@@ -108,11 +110,7 @@ fn a_bag_is_played_round_and_round() {
         return;
     }
     let folder = tempfile::tempdir().expect("a folder");
-    record(folder.path());
-    let config = demo(
-        folder.path(),
-        fed_by(&folder.path().join("recorded"), image_topic),
-    );
+    let config = replayed(folder.path());
     let said = run_well(&[
         "run", &config, "--pace", "lossless", "--loop", "--frames", "7", "--json",
     ]);

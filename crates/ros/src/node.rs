@@ -95,11 +95,11 @@ pub enum RosError {
     Thread(#[source] io::Error),
 }
 
-/// A node in its domain, with a thread of its own that answers services and watches who listens.
+/// A node in its domain, with two threads of its own: one answers services, the other watches who listens.
 ///
 /// It leaves the domain when it is dropped; what was made with it must be gone by then.
 pub struct RosNode {
-    node: Arc<Mutex<Node>>,
+    node: Mutex<Node>,
     surface: Surface,
     audience: Arc<Audience>,
     threads: Vec<Running>,
@@ -137,7 +137,7 @@ impl RosNode {
             })?,
         ];
         Ok(Arc::new(Self {
-            node: Arc::new(Mutex::new(node)),
+            node: Mutex::new(node),
             surface: options.surface.clone(),
             audience,
             threads,
@@ -161,14 +161,12 @@ impl RosNode {
         qos: &QosProfile,
     ) -> Result<Outlet<M>, RosError> {
         let mut node = self.lock();
-        let refused = |source: Cause| endpoint(topic, source);
         let announced = announce(&node, topic, ros_type, qos)?;
         let publisher = node
             .create_publisher(&announced, None)
-            .map_err(|cause| refused(cause.into()))?;
-        let guid = publisher.guid();
+            .map_err(|cause| endpoint(topic, cause.into()))?;
         Ok(Outlet {
-            readers: self.audience.of(topic, guid),
+            readers: self.audience.of(topic, publisher.guid()),
             publisher,
         })
     }
@@ -195,7 +193,7 @@ impl RosNode {
     /// How many readers of a topic, by its absolute name, have been discovered on the network.
     #[must_use]
     pub fn readers_of(&self, topic: &str) -> usize {
-        self.lock().subscription_count(topic)
+        self.audience.readers_of(topic)
     }
 
     fn lock(&self) -> MutexGuard<'_, Node> {

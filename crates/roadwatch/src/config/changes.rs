@@ -38,7 +38,7 @@ const PARAMETERS: &str = "ros__parameters";
 
 impl Changes {
     /// The node's full name, as parameters for single nodes have it: `/namespace/name`.
-    pub(super) fn node_name(&self, file: &Path, text: &str) -> Result<NodeName, Mistakes> {
+    pub(super) fn node_name(&self, file: &Path, text: &str) -> NodeName {
         // Only the names are wanted; all else that may be wrong is said by who reads all of it.
         let table: Table = text.parse().unwrap_or_default();
         let node = table.get("node").and_then(Value::as_table);
@@ -50,11 +50,11 @@ impl Changes {
             namespace: text("namespace").unwrap_or(default.namespace.clone()),
             ..default
         };
-        Ok(NodeName {
+        NodeName {
             full: surface.renamed(&self.ros).private_prefix(),
             configured,
             config: file.to_owned(),
-        })
+        }
     }
 
     /// The parameters as TOML, to be put over the configuration.

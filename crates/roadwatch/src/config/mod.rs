@@ -91,7 +91,7 @@ impl Config {
         changes: &Changes,
         environment: &Environment,
     ) -> Result<Self, Mistakes> {
-        let node_name = changes.node_name(file, text)?;
+        let node_name = changes.node_name(file, text);
         let overrides = changes.overrides(&node_name)?;
         let document = Document::new(file, (text, &overrides), environment);
         let table = document.parse()?;

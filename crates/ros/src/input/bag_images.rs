@@ -95,6 +95,7 @@ struct OneFile {
 pub struct BagImages {
     topic: String,
     files: Vec<OneFile>,
+    compressed: bool,
     span: BagSpan,
     /// File that is being read, and the reader of it.
     at: usize,
@@ -126,6 +127,9 @@ impl BagImages {
         let count = check_topic(path, &files, topic)?;
         let mut images = Self {
             topic: topic.to_owned(),
+            compressed: files
+                .iter()
+                .any(|file| type_of(&file.summary, topic) == Some(COMPRESSED)),
             files,
             span: BagSpan {
                 first: Timestamp::default(),
@@ -227,10 +231,7 @@ impl BagImages {
     }
 
     fn decoded(&self, bytes: &[u8]) -> Result<ImageMessage, cdr::DecodeError> {
-        let is_compressed = self.files.iter().any(|file| {
-            type_of(&file.summary, &self.topic).is_some_and(|found| found == COMPRESSED)
-        });
-        Ok(match is_compressed {
+        Ok(match self.compressed {
             true => ImageMessage::Compressed(cdr::decode::<CompressedImage>(bytes)?),
             false => ImageMessage::Raw(cdr::decode::<Image>(bytes)?),
         })

@@ -14,6 +14,7 @@ use ros2_client::{
     qos::{Durability, History},
 };
 use rustdds::mio1::{Events, Interest, Poll, Token};
+use serde::de::DeserializeOwned;
 use std::{
     fmt, io,
     time::{Duration, Instant},
@@ -79,22 +80,12 @@ impl ImageTopic {
             .durability(Durability::Volatile)
             .history(History::KeepLast { depth: DEPTH });
         let poll = Poll::new().map_err(RosError::Thread)?;
-        let watch = (poll.registry(), Token(0), Interest::READABLE);
         let images = if what.images.ends_with(COMPRESSED) {
-            let mut images =
-                node.subscription(&what.images, "sensor_msgs/CompressedImage", &qos)?;
-            watch
-                .0
-                .register(&mut images, watch.1, watch.2)
-                .map_err(RosError::Thread)?;
-            Images::Compressed(images)
+            let ros_type = "sensor_msgs/CompressedImage";
+            Images::Compressed(watched(node, (&what.images, ros_type), &qos, &poll)?)
         } else {
-            let mut images = node.subscription(&what.images, "sensor_msgs/Image", &qos)?;
-            watch
-                .0
-                .register(&mut images, watch.1, watch.2)
-                .map_err(RosError::Thread)?;
-            Images::Raw(images)
+            let ros_type = "sensor_msgs/Image";
+            Images::Raw(watched(node, (&what.images, ros_type), &qos, &poll)?)
         };
         let info = what.info.as_ref();
         let info = info.map(|name| node.subscription(name, "sensor_msgs/CameraInfo", &qos));
@@ -197,6 +188,20 @@ impl ImageTopic {
             waited => waited,
         }
     }
+}
+
+/// A subscription that wakes `poll`.
+fn watched<M: DeserializeOwned + 'static>(
+    node: &RosNode,
+    (topic, ros_type): (&str, &str),
+    qos: &QosProfile,
+    poll: &Poll,
+) -> Result<Subscription<M>, RosError> {
+    let mut subscription = node.subscription(topic, ros_type, qos)?;
+    poll.registry()
+        .register(&mut subscription, Token(0), Interest::READABLE)
+        .map_err(RosError::Thread)?;
+    Ok(subscription)
 }
 
 impl FrameSource for ImageTopic {

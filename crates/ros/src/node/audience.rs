@@ -2,6 +2,7 @@
 
 use rustdds::{
     DomainParticipant, DomainParticipantStatusEvent as Event, GUID, QosPolicies,
+    discovery::DiscoveredReaderData,
     policy::{Durability, Reliability},
 };
 use std::{
@@ -68,10 +69,15 @@ impl Audience {
                 self.count();
             }
             Event::ReaderLost { guid, .. } => {
-                self.lock().matched.remove(guid);
+                self.forget(|known| known == guid);
                 self.count();
             }
-            Event::ReaderDetected { .. } | Event::ParticipantLost { .. } => self.count(),
+            Event::WriterLost { guid, .. } => self.forget(|known| known == guid),
+            Event::ParticipantLost { id, .. } => {
+                self.forget(|known| known.prefix == *id);
+                self.count();
+            }
+            Event::ReaderDetected { .. } => self.count(),
             Event::RemoteReaderQosIncompatible {
                 local_writer,
                 remote_reader,
@@ -119,15 +125,22 @@ impl Audience {
         })
     }
 
+    /// Who is gone is neither reached nor unfit any more.
+    fn forget(&self, is_gone: impl Fn(&GUID) -> bool) {
+        let mut known = self.lock();
+        known.matched.retain(|guid| !is_gone(guid));
+        known.unfit.retain(|guid| !is_gone(guid));
+    }
+
+    /// The number of readers of `topic` that have been discovered.
+    pub(super) fn readers_of(&self, topic: &str) -> usize {
+        count_of(&self.participant.discovered_readers(), &dds_name(topic))
+    }
+
     fn count(&self) {
         let readers = self.participant.discovered_readers();
-        let known = self.lock();
-        for (name, count) in &known.topics {
-            let of_topic = |topic: &str| topic == name;
-            let found = readers
-                .iter()
-                .filter(|reader| of_topic(reader.subscription_topic_data.topic_name()));
-            count.store(found.count(), Ordering::Relaxed);
+        for (name, count) in &self.lock().topics {
+            count.store(count_of(&readers, name), Ordering::Relaxed);
         }
     }
 
@@ -144,6 +157,14 @@ impl Audience {
     fn lock(&self) -> MutexGuard<'_, Known> {
         self.known.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// Readers of a topic by the name DDS has for it.
+fn count_of(readers: &[DiscoveredReaderData], name: &str) -> usize {
+    let names = readers
+        .iter()
+        .map(|reader| reader.subscription_topic_data.topic_name());
+    names.filter(|of| *of == name).count()
 }
 
 /// What ROS's topic is called in DDS (ROS 2 design, "Topic and Service name mapping to DDS").
