@@ -17,6 +17,8 @@ use std::{
 
 /// Who asks is also found within this time; `rmw_fastrtps` waits for a tenth of a second.
 const REPLY_PATIENCE: Duration = Duration::from_millis(300);
+/// A reader under Cyclone DDS passes over what comes before the writer's first heartbeat, which follows the match.
+const SETTLING: Duration = Duration::from_millis(50);
 /// Between two looks.
 const LOOK: Duration = Duration::from_millis(1);
 
@@ -32,8 +34,8 @@ struct Known {
     topics: BTreeMap<String, Arc<AtomicUsize>>,
     /// Our endpoints and what ROS calls their topics.
     endpoints: BTreeMap<GUID, String>,
-    /// Readers that our writers reach.
-    matched: BTreeSet<GUID>,
+    /// Readers that our writers reach, and since when.
+    matched: BTreeMap<GUID, Instant>,
     /// Readers and writers that were found not to fit, so that each is told of once.
     unfit: BTreeSet<GUID>,
 }
@@ -65,7 +67,8 @@ impl Audience {
     pub(super) fn hear(&self, event: &Event) {
         match event {
             Event::RemoteReaderMatched { remote_reader, .. } => {
-                self.lock().matched.insert(*remote_reader);
+                let now = Instant::now();
+                self.lock().matched.entry(*remote_reader).or_insert(now);
                 self.count();
             }
             Event::ReaderLost { guid, .. } => {
@@ -119,8 +122,9 @@ impl Audience {
         let readers = self.participant.discovered_readers();
         readers.iter().any(|reader| {
             let guid = reader.reader_proxy.remote_reader_guid;
+            let is_settled = |since: &Instant| since.elapsed() >= SETTLING;
             guid.prefix == asker.prefix
-                && known.matched.contains(&guid)
+                && known.matched.get(&guid).is_some_and(is_settled)
                 && reader.subscription_topic_data.topic_name() == topic
         })
     }
@@ -128,7 +132,7 @@ impl Audience {
     /// Who is gone is neither reached nor unfit any more.
     fn forget(&self, is_gone: impl Fn(&GUID) -> bool) {
         let mut known = self.lock();
-        known.matched.retain(|guid| !is_gone(guid));
+        known.matched.retain(|guid, _| !is_gone(guid));
         known.unfit.retain(|guid| !is_gone(guid));
     }
 
