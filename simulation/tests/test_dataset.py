@@ -80,6 +80,18 @@ def test_stamps_keep_every_digit(scene, tmp_path):
     assert stamp_text(1_000_000_001) == "1.000000001"
 
 
+def test_the_vehicles_pose_is_that_of_the_frames_own_moment(scene, tmp_path):
+    """Whenever cameras fire: `front` does 37 ms later."""
+    drive = replace(scene, ego=straight((0.0, 0.0), (10.0, 0.0), 0.0, 5.0))
+    write_dataset(drive, tmp_path / "made")
+    text = (tmp_path / "made/frames.jsonl").read_text()
+    assert re.findall(r'"ego_stamp": ([0-9.]+)', text) == ["1700000000.000000000", "1700000000.100000000"]
+    assert [line["ego_position_world_m"] for line in lines(tmp_path / "made/frames.jsonl")] == [
+        [0.0, 0.0, 0.0], [0.5, 0.0, 0.0]]
+    assert all(line["ego_orientation_world_wxyz"] == [1.0, 0.0, 0.0, 0.0]
+        for line in lines(tmp_path / "made/frames.jsonl"))
+
+
 def test_the_same_scene_twice_gives_the_same_bytes(scene, tmp_path):
     for name in ("a", "b"):
         write_dataset(scene, tmp_path / name)

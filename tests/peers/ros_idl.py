@@ -91,6 +91,29 @@ class PoseWithCovariance(IdlStruct, typename="geometry_msgs::msg::dds_::PoseWith
 
 @dataclass
 @final
+class Twist(IdlStruct, typename="geometry_msgs::msg::dds_::Twist_"):
+    linear: Vector3
+    angular: Vector3
+
+
+@dataclass
+@final
+class TwistWithCovariance(IdlStruct, typename="geometry_msgs::msg::dds_::TwistWithCovariance_"):
+    twist: Twist
+    covariance: array[float64, 36]
+
+
+@dataclass
+@final
+class Odometry(IdlStruct, typename="nav_msgs::msg::dds_::Odometry_"):
+    header: Header
+    child_frame_id: str
+    pose: PoseWithCovariance
+    twist: TwistWithCovariance
+
+
+@dataclass
+@final
 class Transform(IdlStruct, typename="geometry_msgs::msg::dds_::Transform_"):
     translation: Vector3
     rotation: Quaternion
@@ -288,9 +311,20 @@ class KeyComponent(IdlStruct, typename="roadwatch_msgs::msg::dds_::KeyComponent_
 
 @dataclass
 @final
+class UUID(IdlStruct, typename="unique_identifier_msgs::msg::dds_::UUID_"):
+    uuid: array[uint8, 16]
+
+
+@dataclass
+@final
 class Object(IdlStruct, typename="roadwatch_msgs::msg::dds_::Object_"):
     header: Header
+    seen_at: Time
     track_id: uint64
+    uuid: UUID
+    state: str
+    predicted: bool
+    age: float32
     class_id: str
     score: float32
     box_px: array[float32, 4]
@@ -306,6 +340,13 @@ class Object(IdlStruct, typename="roadwatch_msgs::msg::dds_::Object_"):
     yaw_variance: float64
     flip_probability: float32
     heading_age: float32
+    motion_known: bool
+    velocity: Vector3
+    velocity_covariance: array[float64, 4]
+    acceleration: Vector3
+    acceleration_covariance: array[float64, 4]
+    turn_rate: float32
+    turn_rate_variance: float32
     components: sequence[KeyComponent]
     seen_by: sequence[str]
 
@@ -315,6 +356,7 @@ class Object(IdlStruct, typename="roadwatch_msgs::msg::dds_::Object_"):
 class ObjectArray(IdlStruct, typename="roadwatch_msgs::msg::dds_::ObjectArray_"):
     header: Header
     camera: str
+    ego_motion: str
     objects: sequence[Object]
 
 

@@ -58,6 +58,9 @@ exclusive_classes = ["car", "bus", "truck"]
 method = "fused"
 size_statistic = "average"
 
+[ego]
+odometry = "/odometry"
+
 """
     config.write_text(detector + rig_tables())
     return start(config=config)
@@ -139,6 +142,40 @@ def test_outputs_carry_exactly_the_stamps_of_the_images(cameras, name):
     assert stamps(camera.objects)[before:] == shown
     assert stamps(camera.detections)[-len(shown) :] == shown
     assert sum(len(message.objects) for message in camera.objects.messages[before:]) >= len(shown)
+
+
+def odometry(stamp: int, x_m: float, child: str = "base_link") -> dict:
+    position = {"x": x_m, "y": 0.0, "z": 0.0}
+    pose = {"position": position, "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}}
+    return {
+        "header": {"stamp": {"sec": stamp // SECOND, "nanosec": stamp % SECOND}, "frame_id": "odom"},
+        "child_frame_id": child,
+        "pose": {"pose": pose, "covariance": [0.01] * 36},
+    }
+
+
+def test_odometry_tells_where_the_vehicle_is(node, cameras):
+    camera = cameras["front"]
+    known = [message.ego_motion for message in camera.objects.messages]
+    assert known and set(known) == {"none"}, "nobody has told yet"
+    publisher = node.publisher("/odometry", "nav_msgs/msg/Odometry")
+    assert node.wait(lambda: publisher.matched() == 1, 15), "the daemon does not listen"
+    frame = clip("front", 1)[0]
+
+    def is_measured():
+        stamp = camera.stamp()
+        # Around the capture; one of another frame of the vehicle says nothing.
+        publisher.publish(odometry(stamp - 10_000_000, 1.0))
+        publisher.publish(odometry(stamp - 5_000_000, 900.0, child="trailer"))
+        publisher.publish(odometry(stamp + 10_000_000, 1.1))
+        camera.publisher.publish(camera.message(frame, stamp))
+        camera.is_answered(stamp, 2)
+        found = [one for one in camera.objects.messages if nanos(one.header.stamp) == stamp]
+        return bool(found) and found[0].ego_motion == "measured"
+
+    assert node.wait(is_measured, 20)
+    seen = [one for message in camera.objects.messages for one in message.objects]
+    assert all(one.motion_known and one.state in ("tentative", "confirmed") for one in seen)
 
 
 @pytest.mark.parametrize("name", ["front", "back"])

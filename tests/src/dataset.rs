@@ -28,7 +28,7 @@ pub fn score(world: &World, played: &Played, filter: &TruthFilter) -> Report {
         lost_images: LostImages::Count,
         frame_limit: None,
     };
-    evaluate(&evaluation, &played.cameras, &[])
+    evaluate(&evaluation, &played.cameras, &[], Vec::new())
 }
 
 /// Writes `rig.toml`, `frames.jsonl`, `truth.jsonl` and a folder without images for each camera.
@@ -78,12 +78,14 @@ fn frame_line(world: &World, frame: u64) -> String {
         let view = &world.views(camera)[frame as usize];
         format!("\"{}\": {}", rig.camera(camera).name, view.captured_at)
     });
-    let ego = world.scenario().ego.at(world.scenario().moment(0, frame));
+    let moment = world.scenario().moment(0, frame);
+    let ego = world.scenario().ego.at(moment);
     let yaw = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), ego.rotation.angle());
     format!(
-        "{{\"frame\": {frame}, \"stamp\": {{{}}}, \"ego_position_world_m\": [{:?}, {:?}, 0.0], \
+        "{{\"frame\": {frame}, \"stamp\": {{{}}}, \"ego_stamp\": {}, \"ego_position_world_m\": [{:?}, {:?}, 0.0], \
          \"ego_orientation_world_wxyz\": {:?}}}\n",
         stamps.collect::<Vec<_>>().join(", "),
+        world.scenario().stamp(moment),
         ego.translation.x,
         ego.translation.y,
         wxyz(&yaw),

@@ -38,6 +38,17 @@ impl MountError {
     }
 }
 
+/// A camera that is down for a while.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Blind {
+    /// Which.
+    pub camera: usize,
+    /// The first frame it loses.
+    pub from: u64,
+    /// The first frame it has again.
+    pub until: u64,
+}
+
 /// Everything that goes wrong. The default is nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Imperfections {
@@ -51,6 +62,8 @@ pub struct Imperfections {
     pub false_alarm_share: f64,
     /// Share of frames that a camera loses.
     pub missing_share: f64,
+    /// A camera that loses all frames from one on, and before another.
+    pub blind: Option<Blind>,
     /// Of every camera.
     pub mount: MountError,
 }
@@ -67,7 +80,9 @@ impl Imperfections {
     #[must_use]
     pub fn loses(&self, camera: usize, frame: u64) -> bool {
         let key = [camera as u64, frame];
-        self.random(Purpose::MissingFrame, &key).unit() < self.missing_share
+        let blind = |one: Blind| one.camera == camera && (one.from..one.until).contains(&frame);
+        self.blind.is_some_and(blind)
+            || self.random(Purpose::MissingFrame, &key).unit() < self.missing_share
     }
 
     /// The stream of one purpose and one thing.

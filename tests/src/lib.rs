@@ -19,13 +19,14 @@ pub mod rigs;
 pub mod scenario;
 pub mod scenes;
 pub mod stepping;
+pub mod traffic;
 pub mod view;
 pub mod world;
 
 pub use dataset::{score, write_dataset};
-pub use imperfections::{Imperfections, MountError};
+pub use imperfections::{Blind, Imperfections, MountError};
 pub use path::Path;
-pub use playing::{Played, play};
+pub use playing::{Played, play, play_tracked};
 pub use scenario::{Actor, Scenario};
 pub use stepping::Stepped;
 pub use view::{Seen, View};

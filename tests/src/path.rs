@@ -26,6 +26,13 @@ pub enum Path {
         /// Counter-clockwise, radians per second.
         turn_rad_s: f64,
     },
+    /// One arc after the other, then on along the last.
+    Legs {
+        /// At time zero.
+        start: Isometry2<f64>,
+        /// At least one.
+        legs: Vec<Leg>,
+    },
     /// Standing at one pose after the other, then at the last.
     Stations {
         /// At least one.
@@ -33,6 +40,29 @@ pub enum Path {
         /// How long at each.
         dwell: Duration,
     },
+}
+
+/// A part of a path at constant speed and turn rate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leg {
+    /// How long.
+    pub secs: f64,
+    /// Along the heading, metres per second.
+    pub speed_m_s: f64,
+    /// Counter-clockwise, radians per second.
+    pub turn_rad_s: f64,
+}
+
+impl Leg {
+    /// Straight on.
+    #[must_use]
+    pub fn straight(secs: f64, speed_m_s: f64) -> Self {
+        Self {
+            secs,
+            speed_m_s,
+            turn_rad_s: 0.0,
+        }
+    }
 }
 
 /// A pose from metres and degrees.
@@ -78,6 +108,16 @@ impl Path {
                 speed_m_s,
                 turn_rad_s,
             } => start * along_arc(speed_m_s * t, turn_rad_s * t),
+            Self::Legs { start, legs } => {
+                let (mut pose, mut left) = (*start, t);
+                for (at, leg) in legs.iter().enumerate() {
+                    let is_last = at + 1 == legs.len();
+                    let secs = if is_last { left } else { left.min(leg.secs) };
+                    pose *= along_arc(leg.speed_m_s * secs, leg.turn_rad_s * secs);
+                    left -= secs;
+                }
+                pose
+            }
             Self::Stations { poses, dwell } => {
                 let station = time.as_nanos() / dwell.as_nanos().max(1);
                 let last = poses.len().checked_sub(1).expect("at least one station");

@@ -5,12 +5,14 @@ use crate::{
     detector::WorldDetector,
     world::World,
 };
-use roadwatch_core::{Clock, Detector, FrameSource, Locator, Output, Scene, Sink, SinkError};
+use roadwatch_core::{
+    Clock, Detector, EgoMotion, FrameSource, Locator, Output, Reidentifier, Scene, Sink, SinkError,
+};
 use roadwatch_lab::{Recorded, Recorder};
 use roadwatch_pipeline::{
     CameraCounts, NamedSink, Outcome, Overload, PipelineOptions, Stages, perceive::Perceiver, start,
 };
-use roadwatch_reid::{ByCamera, Rule};
+use roadwatch_reid::{ByCamera, Rule, Tracker, TrackingOptions};
 use std::{
     sync::{Arc, Mutex, PoisonError},
     time::{Duration, Instant},
@@ -46,6 +48,48 @@ impl Clock for Monotonic {
 /// When a thread of the pipeline does, or it does not end.
 #[must_use]
 pub fn play(world: &Arc<World>, locators: Vec<Box<dyn Locator>>, max_batch: usize) -> Played {
+    run(world, locators, max_batch, Memory::left_to_right())
+}
+
+/// The same with objects tracked, by someone who knows how the vehicle moves.
+///
+/// # Panics
+/// As [`play`].
+#[must_use]
+pub fn play_tracked(world: &Arc<World>, locators: Vec<Box<dyn Locator>>) -> Played {
+    run(world, locators, 1, Memory::tracks(world))
+}
+
+/// Who remembers objects, and what is known of the vehicle.
+pub(crate) struct Memory {
+    reidentifier: Box<dyn Reidentifier>,
+    ego: EgoMotion,
+}
+
+impl Memory {
+    pub(crate) fn left_to_right() -> Self {
+        let ground_memory = ByCamera::DEFAULT_GROUND_MEMORY;
+        Self {
+            reidentifier: Box::new(ByCamera::new(Rule::LeftToRight, ground_memory)),
+            ego: EgoMotion::default(),
+        }
+    }
+
+    pub(crate) fn tracks(world: &World) -> Self {
+        let rig = Arc::new(world.scenario().rig.clone());
+        Self {
+            reidentifier: Box::new(Tracker::new(rig, TrackingOptions::default())),
+            ego: world.ego_motion(),
+        }
+    }
+}
+
+fn run(
+    world: &Arc<World>,
+    locators: Vec<Box<dyn Locator>>,
+    max_batch: usize,
+    memory: Memory,
+) -> Played {
     let (recorder, scenes) = (Recorder::default(), SceneLog::default());
     let sinks = vec![
         named("recorder", recorder.clone()),
@@ -54,7 +98,7 @@ pub fn play(world: &Arc<World>, locators: Vec<Box<dyn Locator>>, max_batch: usiz
     let rig = &world.scenario().rig;
     let releases = rig.ids().map(|_| Release::AtOnce).collect();
     let detector = Arc::new(WorldDetector::new(Arc::clone(world), max_batch));
-    let stages = stages(world, releases, (detector, locators), sinks);
+    let stages = stages(world, releases, (detector, locators, memory), sinks);
     let options = PipelineOptions::new(Overload::Wait);
     let running = start(stages, options, Arc::new(Monotonic)).expect("starts");
     let outcome = running.wait(PATIENCE).expect("no panic");
@@ -74,7 +118,7 @@ pub fn play(world: &Arc<World>, locators: Vec<Box<dyn Locator>>, max_batch: usiz
 pub(crate) fn stages(
     world: &Arc<World>,
     releases: Vec<Release>,
-    (detector, locators): (Arc<dyn Detector>, Vec<Box<dyn Locator>>),
+    (detector, locators, memory): (Arc<dyn Detector>, Vec<Box<dyn Locator>>, Memory),
     sinks: Vec<NamedSink>,
 ) -> Stages {
     let cameras = world.scenario().rig.ids().zip(releases);
@@ -88,10 +132,8 @@ pub(crate) fn stages(
         perceiver: Perceiver {
             locators,
             rotation: None,
-            reidentifier: Box::new(ByCamera::new(
-                Rule::LeftToRight,
-                ByCamera::DEFAULT_GROUND_MEMORY,
-            )),
+            reidentifier: memory.reidentifier,
+            ego: Arc::new(memory.ego),
         },
         sinks,
     }

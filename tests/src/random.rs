@@ -16,6 +16,8 @@ pub enum Purpose {
     FalseAlarm,
     /// Whether a camera loses a frame.
     MissingFrame,
+    /// How late a camera fires.
+    StampJitter,
     /// Where something stands.
     Place,
 }

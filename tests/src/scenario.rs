@@ -1,6 +1,9 @@
 //! What moves where, and who looks at it.
 
-use crate::path::Path;
+use crate::{
+    path::Path,
+    random::{Purpose, Random},
+};
 use roadwatch_core::{ObjectClass, Rig, SizeLwh, Timestamp};
 use std::time::Duration;
 
@@ -61,6 +64,8 @@ pub struct Scenario {
     pub period: Duration,
     /// From one camera of a frame to the next, in order of their ids; all of them fit into a period.
     pub stagger: Duration,
+    /// How far each capture is from where it should be, at most, evenly; frames of one camera stay in order.
+    pub stamp_jitter: Duration,
 }
 
 impl Scenario {
@@ -68,7 +73,10 @@ impl Scenario {
     #[must_use]
     pub fn moment(&self, camera: usize, frame: u64) -> Duration {
         let whole = self.period.as_nanos() as u64 * frame;
-        Duration::from_nanos(whole + self.stagger.as_nanos() as u64 * camera as u64)
+        let jitter = self
+            .stamp_jitter
+            .mul_f64(Random::keyed(0, Purpose::StampJitter, &[camera as u64, frame]).unit());
+        Duration::from_nanos(whole + self.stagger.as_nanos() as u64 * camera as u64) + jitter
     }
 
     /// The stamp of a moment.

@@ -22,6 +22,7 @@ pub fn before_one_camera(actors: Vec<Actor>, frames: u64) -> Scenario {
         frames,
         period: PERIOD,
         stagger: Duration::ZERO,
+        stamp_jitter: Duration::ZERO,
     }
 }
 
@@ -141,6 +142,7 @@ pub fn street(frames: u64) -> Scenario {
         frames,
         period: PERIOD,
         stagger: Duration::from_millis(12),
+        stamp_jitter: Duration::ZERO,
     }
 }
 

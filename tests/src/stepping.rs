@@ -3,7 +3,7 @@
 use crate::{
     cameras::Release,
     detector::WorldDetector,
-    playing::{Monotonic, PATIENCE, named, stages},
+    playing::{Memory, Monotonic, PATIENCE, named, stages},
     world::World,
 };
 use roadwatch_core::{CameraId, Locator, Output, Sink, SinkError};
@@ -48,7 +48,12 @@ impl Stepped {
         let (sender, outputs) = sync_channel(ROOM);
         let sinks = vec![named("outputs", Outputs(sender))];
         let detector = Arc::new(WorldDetector::new(Arc::clone(world), 1));
-        let stages = stages(world, releases, (detector, locators), sinks);
+        let stages = stages(
+            world,
+            releases,
+            (detector, locators, Memory::left_to_right()),
+            sinks,
+        );
         let options = PipelineOptions {
             scene_timeout,
             ..PipelineOptions::new(Overload::NewestWins)

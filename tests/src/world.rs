@@ -5,11 +5,12 @@ use crate::{
     scenario::{CAR_SIZE, Scenario},
     view::{Eye, Seen, View},
 };
-use roadwatch_core::{CameraId, Locator, Method, ObjectClass, RigCamera};
+use nalgebra::{Isometry3, Vector3};
+use roadwatch_core::{CameraId, EgoMotion, Locator, Method, ObjectClass, RigCamera};
 use roadwatch_locate::{
     CameraLocator, GridSpec, HullSpec, LocationTable, LocatorOptions, SizeGroup, build_table,
 };
-use std::sync::Arc;
+use std::{sync::Arc, time::Duration};
 
 /// The ground that tables of the world cover: as far as its scenarios go.
 pub const GRID: GridSpec = GridSpec {
@@ -67,6 +68,30 @@ impl World {
     #[must_use]
     pub fn imperfections(&self) -> &Imperfections {
         &self.imperfections
+    }
+
+    /// Where the vehicle is, told every twentieth of a second from before the first capture to after the last.
+    ///
+    /// # Panics
+    /// Never: the poses are finite and in order.
+    #[must_use]
+    pub fn ego_motion(&self) -> EgoMotion {
+        const EVERY: Duration = Duration::from_millis(50);
+        let motion = EgoMotion::default();
+        let end = self.scenario.period * (self.scenario.frames as u32 + 2);
+        let mut moment = Duration::ZERO;
+        while moment < end {
+            let flat = self.scenario.ego.at(moment);
+            let place = flat.translation.vector;
+            let pose = Isometry3::new(
+                Vector3::new(place.x, place.y, 0.0),
+                Vector3::z() * flat.rotation.angle(),
+            );
+            let told = motion.tell(self.scenario.stamp(moment), pose);
+            told.expect("a pose");
+            moment += EVERY;
+        }
+        motion
     }
 
     /// A camera's frames, in order.

@@ -21,6 +21,7 @@ fn everything_wrong(seed: u64) -> Imperfections {
             roll_deg: 0.3,
             up_m: 0.02,
         },
+        blind: None,
     }
 }
 

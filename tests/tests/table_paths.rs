@@ -1,7 +1,7 @@
 //! A table of labelled frames against one of the calibration, on the paper's X and Y paths.
 
 use roadwatch_camera::RigDataset;
-use roadwatch_core::{Location, Method, RigCamera};
+use roadwatch_core::{Method, RigCamera};
 use roadwatch_lab::{LabelledTableSpec, Truth, TruthFilter, table_from_labels};
 use roadwatch_locate::LocationTable;
 use roadwatch_tests::{
@@ -48,7 +48,7 @@ fn places(scenario: &Scenario, camera: &RigCamera, table: &LocationTable) -> Vec
     let frames = played.cameras.iter().zip(world.all_views());
     frames
         .map(|(frame, (_, view))| {
-            let found: &Location = frame.location(0).expect("found on its path");
+            let (found, _) = frame.single(0).expect("found on its path");
             assert_eq!(found.method, Method::Table);
             let center = view.objects[0].truth.center;
             [

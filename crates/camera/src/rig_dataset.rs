@@ -36,6 +36,8 @@ pub struct DatasetFrame {
     pub stamps: Vec<Option<Timestamp>>,
     /// Where the vehicle was, `base_link` in world, metres; `None` where the recording does not know.
     pub world_from_base: Option<Isometry3<f64>>,
+    /// The moment of that pose: `ego_stamp`, or without one the middle of the captures.
+    pub ego_at: Timestamp,
 }
 
 /// An image of a dataset that is laid out in another way.
@@ -116,6 +118,7 @@ impl RigDataset {
                     number,
                     stamps: vec![None; cameras.len()],
                     world_from_base: None,
+                    ego_at: image.stamp,
                 });
             }
             if let Some(frame) = frames.last_mut() {
@@ -155,6 +158,12 @@ impl RigDataset {
     #[must_use]
     pub fn frames(&self) -> &[DatasetFrame] {
         &self.frames
+    }
+
+    /// Where the vehicle was, moment by moment; nothing where the recording does not know.
+    pub fn ego_poses(&self) -> impl Iterator<Item = (Timestamp, Isometry3<f64>)> {
+        let frames = self.frames.iter();
+        frames.filter_map(|frame| Some((frame.ego_at, frame.world_from_base?)))
     }
 
     /// What the camera at `index` of [`RigDataset::cameras`] saw; `None` when there is no such camera.

@@ -7,6 +7,7 @@
 pub mod camera_model;
 pub mod detection;
 pub mod distortion;
+pub mod ego;
 mod error_chain;
 pub mod frame;
 pub mod ground;
@@ -23,6 +24,7 @@ pub mod time;
 pub use camera_model::{CameraModel, ImageSize, Intrinsics};
 pub use detection::{BoxPx, Detection, Score};
 pub use distortion::Distortion;
+pub use ego::{Ego, EgoKnowledge, EgoMotion};
 pub use error_chain::error_chain;
 pub use frame::{CameraId, DecodeError, DecodeImage, Frame, Image, PerFrame, Pixels};
 pub use ground::{GroundReading, SlopeEvidence};
@@ -34,9 +36,9 @@ pub use mount::Mount;
 pub use name::CameraName;
 pub use object_class::ObjectClass;
 pub use rig::{MeasuredFocal, Rig, RigCamera};
-pub use scene::{Scene, SceneObject, Track, TrackId};
+pub use scene::{Motion, Phase, Scene, SceneObject, Track, TrackId};
 pub use seam::{
     Clock, DetectError, Detector, FrameSource, Locator, Output, Perceived, Reidentifier,
-    RotationError, RotationEstimator, Sink, SinkError, SourceError,
+    RotationError, RotationEstimator, Round, Sink, SinkError, SourceError,
 };
 pub use time::Timestamp;

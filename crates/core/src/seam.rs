@@ -2,9 +2,10 @@
 
 use crate::{
     detection::Detection,
+    ego::Ego,
     frame::{CameraId, DecodeError, Frame, PerFrame},
     location::{Heading, Known, Located, Location, Oriented, Rotation},
-    scene::{Scene, Track},
+    scene::{Scene, SceneObject, Track},
     time::Timestamp,
 };
 use std::{
@@ -111,12 +112,62 @@ pub trait RotationEstimator: Send {
 
 /// Says who is who; the only memory, of objects and of the ground they stand on.
 pub trait Reidentifier: Send {
-    /// What earlier frames know about each detection of this frame, in the same order.
-    fn recall(&self, seen: &PerFrame<Detection>) -> Vec<Known>;
+    /// What earlier frames know about each detection of this frame, in the same order. `ego` is where the vehicle is at
+    /// the frame's capture.
+    fn recall(&self, seen: &PerFrame<Detection>, ego: &Ego) -> Vec<Known>;
 
     /// Takes a frame's objects into memory and gives each its identity, in the same order. `unlocated` are
     /// the frame's other detections: nobody gets to know them, but they stand in the row.
-    fn commit(&mut self, seen: PerFrame<Oriented>, unlocated: &[Detection]) -> PerFrame<Track>;
+    fn commit(
+        &mut self,
+        seen: PerFrame<Oriented>,
+        unlocated: &[Detection],
+        ego: &Ego,
+    ) -> PerFrame<Track>;
+
+    /// The objects of a round at its stamp, `ego` where the vehicle is then. By itself each camera's objects stand side
+    /// by side: who two cameras see is there twice.
+    fn scene(&mut self, round: &Round, ego: &Ego) -> Vec<SceneObject> {
+        let _ = ego;
+        round.side_by_side()
+    }
+}
+
+/// What was made of one rig round: each camera's next frame once.
+#[derive(Clone, Debug)]
+pub struct Round {
+    /// Count of rounds, from 0.
+    pub seq: u64,
+    /// The newest capture time.
+    pub stamp: Timestamp,
+    /// Of each camera that had a frame, in order of their ids.
+    pub perceived: Vec<Arc<Perceived>>,
+}
+
+impl Round {
+    fn side_by_side(&self) -> Vec<SceneObject> {
+        let of_camera = |perceived: &Arc<Perceived>| {
+            let Frame {
+                camera,
+                captured_at,
+                ..
+            } = perceived.tracks.frame;
+            let object = move |track: &Track| SceneObject {
+                track: track.clone(),
+                seen_by: vec![camera],
+                seen_at: captured_at,
+                stamp: captured_at,
+                trail: Vec::new(),
+            };
+            perceived
+                .tracks
+                .items
+                .iter()
+                .map(object)
+                .collect::<Vec<_>>()
+        };
+        self.perceived.iter().flat_map(of_camera).collect()
+    }
 }
 
 /// All that was made of one frame.
@@ -126,6 +177,8 @@ pub struct Perceived {
     pub tracks: PerFrame<Track>,
     /// What was detected and has no place: a class without a known size, a box no method can locate.
     pub unlocated: Vec<Detection>,
+    /// Where the vehicle was.
+    pub ego: Ego,
 }
 
 /// What the pipeline hands to its sinks.

@@ -16,10 +16,14 @@ pub struct CameraGround;
 /// The vehicle: x forward, y left, z up (REP-105 `base_link`), metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BaseLink;
+/// The ground that the vehicle drives over: fixed to the world, continuous, its origin anywhere (REP-105 `odom`), metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Odom;
 
 impl Space for Optical {}
 impl Space for CameraGround {}
 impl Space for BaseLink {}
+impl Space for Odom {}
 
 /// A point in space `S`, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,10 +1,12 @@
 //! Evaluation: detections of a whole dataset against its labels, every method side by side.
 
 use crate::{
+    baseline::Baseline,
     bootstrap::Intervals,
     identity::{IdentityReport, SeenTrack, SeenTruth, Sighting},
     matching::{Matches, TruthFilter, match_image},
-    recorder::Recorded,
+    motion::{MotionReport, TrueMotion, VelocityError},
+    recorder::{Answer, Recorded},
     report::{DetectionScore, Report},
     sample::{Estimator, Sample, Target},
     sample_table::SampleTable,
@@ -12,9 +14,7 @@ use crate::{
     truth::Truth,
 };
 use roadwatch_camera::RigDataset;
-use roadwatch_core::{
-    CameraId, Detection, Heading, Known, Location, Locator, Method, Rig, Timestamp,
-};
+use roadwatch_core::{CameraId, Detection, Known, Locator, Method, Rig, Timestamp};
 use std::{
     collections::{BTreeMap, HashMap},
     sync::Arc,
@@ -58,7 +58,9 @@ struct Pair<'a> {
     camera: usize,
     detection: &'a Detection,
     /// Where it was said to be, and which way it points; `None` when no place was published for it.
-    published: Option<(&'a Location, Option<Heading>)>,
+    published: Option<Answer>,
+    /// The same by this frame alone.
+    single: Option<Answer>,
     known: Known,
     target: Arc<Target>,
 }
@@ -72,17 +74,26 @@ struct Matched<'a> {
     targets: Vec<Arc<Target>>,
     pairs: Vec<Pair<'a>>,
     sightings: Vec<Sighting>,
+    velocities: Vec<VelocityError>,
 }
 
-/// Matches everything recorded to the labels, and scores each method on the same matches.
+/// Matches everything recorded to the labels, and scores each method on the same matches, and each baseline's
+/// identities on the same objects.
 #[must_use]
 pub fn evaluate(
     evaluation: &Evaluation<'_>,
     recorded: &[Recorded],
     methods: &[MethodUnderTest],
+    baselines: Vec<Baseline>,
 ) -> Report {
     let matched = evaluation.matched(recorded);
-    let (mut samples, mut unavailable) = (matched.published(), BTreeMap::new());
+    let identity_baselines = baselines.into_iter().map(|baseline| {
+        let (name, renamed) = baseline.rename(recorded);
+        let sightings = evaluation.matched(&renamed).sightings;
+        (name, IdentityReport::of(&sightings))
+    });
+    let identity_baselines = identity_baselines.collect();
+    let (mut samples, mut unavailable) = (matched.said(), BTreeMap::new());
     for MethodUnderTest { method, locators } in methods {
         match locators {
             Ok(locators) => samples.extend(matched.located_by(*method, locators)),
@@ -97,7 +108,7 @@ pub fn evaluate(
         samples,
     };
     let figures = |estimator| Figures::of(table.of(estimator));
-    let published = figures(Estimator::Published);
+    let (published, single) = (figures(Estimator::Published), figures(Estimator::Single));
     let of_method =
         |tested: &MethodUnderTest| (tested.method, figures(Estimator::By(tested.method)));
     let estimators = table.estimators().into_iter();
@@ -107,9 +118,12 @@ pub fn evaluate(
         filter: evaluation.filter.clone(),
         detection,
         published,
+        single,
         methods: methods.iter().map(of_method).collect(),
         unavailable,
         identity: IdentityReport::of(&matched.sightings),
+        identity_baselines,
+        motion: MotionReport::of(&matched.velocities),
         intervals: estimators
             .map(|who| (who, Intervals::of(table.of(who))))
             .collect(),
@@ -150,10 +164,11 @@ impl Evaluation<'_> {
             .map(|frame| ((frame.camera, frame.captured_at), frame))
             .collect();
         let mut matched = Matched::default();
+        let motion = TrueMotion::of(self.dataset, self.truth);
         for (camera, captured_at, number) in self.images() {
             matched.images += 1;
             match by_moment.get(&(camera, captured_at)) {
-                Some(frame) => self.match_frame(&mut matched, frame, number),
+                Some(frame) => self.match_frame(&mut matched, (frame, number), motion.as_ref()),
                 None if self.lost_images == LostImages::Ignore => {}
                 None => self.miss_all(&mut matched, camera, number),
             }
@@ -170,7 +185,12 @@ impl Evaluation<'_> {
         matched.targets.extend(targets);
     }
 
-    fn match_frame<'r>(&self, matched: &mut Matched<'r>, frame: &'r Recorded, number: u64) {
+    fn match_frame<'r>(
+        &self,
+        matched: &mut Matched<'r>,
+        (frame, number): (&'r Recorded, u64),
+        motion: Option<&TrueMotion>,
+    ) {
         let camera = self.rig.camera(frame.camera);
         let labels = self.truth.labels(number, camera.name.as_str());
         let detections: Vec<&Detection> = frame.detections().collect();
@@ -184,18 +204,21 @@ impl Evaluation<'_> {
         let objects = labels.objects.iter().enumerate();
         for (at, object) in objects.filter(|(_, object)| self.filter.admits(object)) {
             let detection = taken.get(&at);
+            let track = detection.and_then(|&at| frame.tracks.get(at));
+            matched
+                .velocities
+                .extend(track.zip(motion).and_then(|(track, motion)| {
+                    motion.judge((&object.id, number), track, frame.captured_at)
+                }));
             let target = Arc::new(Target::new(object, camera, detection.is_some()));
             matched.targets.push(Arc::clone(&target));
-            matched.pairs.extend(detection.map(|&detection| {
-                Pair {
-                    camera: frame.camera.index(),
-                    detection: detections[detection],
-                    published: frame
-                        .location(detection)
-                        .map(|location| (location, frame.heading(detection))),
-                    known: frame.known(detection),
-                    target,
-                }
+            matched.pairs.extend(detection.map(|&detection| Pair {
+                camera: frame.camera.index(),
+                detection: detections[detection],
+                published: frame.published(detection, camera),
+                single: frame.single(detection),
+                known: frame.known(detection),
+                target,
             }));
         }
     }
@@ -237,7 +260,7 @@ impl Evaluation<'_> {
                     SeenTrack {
                         id: track.id.0,
                         box_px: located.detection.box_px,
-                        center: located.location.position,
+                        center: track.position(),
                     }
                 })
                 .collect(),
@@ -246,11 +269,17 @@ impl Evaluation<'_> {
 }
 
 impl Matched<'_> {
-    fn published(&self) -> Vec<Sample> {
-        let pairs = self.pairs.iter();
-        pairs
-            .map(|pair| Sample::judge(Estimator::Published, &pair.target, pair.published))
-            .collect()
+    fn said(&self) -> Vec<Sample> {
+        let judge = |who, pair: &Pair<'_>, answer: &Option<Answer>| {
+            let answer = answer.as_ref();
+            let answer = answer.map(|(location, heading)| (location, *heading));
+            Sample::judge(who, &pair.target, answer)
+        };
+        let published = self.pairs.iter();
+        let published = published.map(|pair| judge(Estimator::Published, pair, &pair.published));
+        let single = self.pairs.iter();
+        let single = single.map(|pair| judge(Estimator::Single, pair, &pair.single));
+        published.chain(single).collect()
     }
 
     fn located_by(

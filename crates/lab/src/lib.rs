@@ -3,6 +3,7 @@
 //! There is one matcher ([`matching`]), one scorer ([`score`]) and one table of samples ([`sample_table`]); every
 //! report, group and plot is made of them.
 
+pub mod baseline;
 pub mod bootstrap;
 pub mod dataset_format;
 pub mod evaluate;
@@ -16,6 +17,7 @@ pub mod labelled_table;
 #[cfg(test)]
 mod made;
 pub mod matching;
+pub mod motion;
 pub mod plots;
 pub mod recorder;
 pub mod report;
@@ -26,6 +28,7 @@ pub mod score;
 pub mod study;
 pub mod truth;
 
+pub use baseline::Baseline;
 pub use bootstrap::Intervals;
 pub use dataset_format::{DatasetFormat, OpenDatasetError};
 pub use evaluate::{Evaluation, LostImages, MethodUnderTest, evaluate};

@@ -1,8 +1,8 @@
 //! A sink that keeps what was perceived, for scoring afterwards.
 
 use roadwatch_core::{
-    CameraId, Detection, Heading, Known, Location, Output, Sink, SinkError, SlopeEvidence,
-    Timestamp, Track,
+    CameraId, Detection, Heading, Known, Location, Output, RigCamera, Sink, SinkError,
+    SlopeEvidence, Timestamp, Track,
 };
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -29,11 +29,31 @@ impl Recorded {
         located.chain(&self.unlocated)
     }
 
-    /// The place of the detection that [`Recorded::detections`] gives at `index`; `None` without one.
+    /// What the frame by itself says of the place of the detection that [`Recorded::detections`] gives at `index`, and
+    /// of its heading; `None` without a place.
     #[must_use]
-    pub fn location(&self, index: usize) -> Option<&Location> {
+    pub fn single(&self, index: usize) -> Option<Answer> {
+        let observed = &self.tracks.get(index)?.observed;
+        Some((
+            observed.located.location.clone(),
+            observed.heading.map(|kept| kept.heading),
+        ))
+    }
+
+    /// What was published of it.
+    #[must_use]
+    pub fn published(&self, index: usize, camera: &RigCamera) -> Option<Answer> {
         let track = self.tracks.get(index)?;
-        Some(&track.observed.located.location)
+        let position = track.position();
+        let location = Location {
+            position,
+            covariance: track.covariance(),
+            size: track.size(),
+            depth_m: camera.depth_m(position),
+            range_m: camera.range_m(position),
+            ..track.observed.located.location.clone()
+        };
+        Some((location, track.heading()))
     }
 
     /// What is known of the detection beside its box: of the ground by other objects. Nothing of itself from
@@ -46,14 +66,10 @@ impl Recorded {
             slopes: located.map_or_else(SlopeEvidence::default, |located| located.slopes),
         }
     }
-
-    /// Its heading; `None` where none is known.
-    #[must_use]
-    pub fn heading(&self, index: usize) -> Option<Heading> {
-        let kept = self.tracks.get(index)?.observed.heading?;
-        Some(kept.heading)
-    }
 }
+
+/// A place, and the heading that was decided for.
+pub type Answer = (Location, Option<Heading>);
 
 /// The sink. Clones share what is kept.
 #[derive(Debug, Clone, Default)]

@@ -1,5 +1,6 @@
 //! The report: `report.json` for programs, `report.md` for people, plots beside them.
 
+mod identities;
 mod json;
 pub(crate) mod markdown;
 
@@ -8,6 +9,7 @@ use crate::{
     heading_score::HeadingScore,
     identity::IdentityReport,
     matching::TruthFilter,
+    motion::MotionReport,
     plots::{self, PlotError},
     sample::Estimator,
     sample_table::SampleTable,
@@ -56,12 +58,18 @@ pub struct Report {
     pub detection: DetectionScore,
     /// How well the pipeline placed them: what it published, by the methods it was configured with.
     pub published: Figures,
+    /// What each frame by itself said of them, before tracks put frames together.
+    pub single: Figures,
     /// How well they were placed, by method.
     pub methods: BTreeMap<Method, Figures>,
     /// Why methods were not tried, where they were not.
     pub unavailable: BTreeMap<Method, String>,
     /// How well identities hold.
     pub identity: IdentityReport,
+    /// How well the baselines' do on the same objects, by name.
+    pub identity_baselines: BTreeMap<String, IdentityReport>,
+    /// How well speeds are known.
+    pub motion: MotionReport,
     /// How far the main figures would move with other objects.
     pub intervals: BTreeMap<Estimator, Intervals>,
     /// `None` when nobody measured.
@@ -88,11 +96,15 @@ pub enum ReportError {
 }
 
 impl Report {
-    /// What was published, then every method.
+    /// What was published, what single frames said, then every method.
     fn places(&self) -> impl Iterator<Item = (Estimator, &Figures)> {
         let methods = self.methods.iter();
         let methods = methods.map(|(method, figures)| (Estimator::By(*method), figures));
-        std::iter::once((Estimator::Published, &self.published)).chain(methods)
+        let said = [
+            (Estimator::Published, &self.published),
+            (Estimator::Single, &self.single),
+        ];
+        said.into_iter().chain(methods)
     }
 
     /// Whose headings stand for the evaluation: what was published, or the fused method's where that says nothing

@@ -11,6 +11,8 @@ use std::{f64::consts::PI, fmt, sync::Arc};
 pub enum Estimator {
     /// The pipeline's own, by the methods that it was configured with.
     Published,
+    /// What the frame by itself said, before it was put together with others.
+    Single,
     /// One method's, on every object.
     By(Method),
 }
@@ -21,6 +23,7 @@ impl Estimator {
     pub const fn as_str(self) -> &'static str {
         match self {
             Self::Published => "published",
+            Self::Single => "single",
             Self::By(method) => method.as_str(),
         }
     }

@@ -45,11 +45,11 @@ fn range_m(track: &Track) -> f64 {
 
 fn draw_object(canvas: &mut Canvas, camera: &RigCamera, track: &Track) -> Result<(), DrawError> {
     let object = &track.observed;
-    let colour = palette::of_class(object.located.detection.class.as_str());
+    let colour = palette::of_identity(track.id);
     let share = f64::from(object.located.detection.box_px.height_px())
         / f64::from(camera.model.size.height_px);
     let width = if share < THIN_BELOW { 1 } else { 2 };
-    for [a, b] in Cuboid::of(object).edges_px(camera) {
+    for [a, b] in Cuboid::of(track).edges_px(camera) {
         canvas.line(a, b, colour, width)?;
     }
     label(canvas, object, track, colour)

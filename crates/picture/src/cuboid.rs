@@ -2,7 +2,7 @@
 
 use nalgebra::{Rotation3, Vector3};
 use roadwatch_core::{
-    Oriented, RigCamera,
+    RigCamera, Track,
     space::{BaseLink, Optical, Point},
 };
 
@@ -44,16 +44,12 @@ pub(crate) struct Cuboid {
 }
 
 impl Cuboid {
-    pub(crate) fn of(object: &Oriented) -> Self {
-        let location = &object.located.location;
-        let half = Vector3::new(
-            location.size.length_m,
-            location.size.width_m,
-            location.size.height_m,
-        ) / 2.0;
-        let yaw_rad = object.heading.map_or(0.0, |kept| kept.heading.yaw_rad);
+    pub(crate) fn of(track: &Track) -> Self {
+        let size = track.size();
+        let half = Vector3::new(size.length_m, size.width_m, size.height_m) / 2.0;
+        let yaw_rad = track.heading().map_or(0.0, |heading| heading.yaw_rad);
         let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), yaw_rad);
-        let center = location.position.coords.coords;
+        let center = track.position().coords.coords;
         Self {
             corners: CORNERS.map(|signs| center + turn * Vector3::from(signs).component_mul(&half)),
         }

@@ -6,7 +6,7 @@ use crate::{
     palette,
 };
 use nalgebra::{SymmetricEigen, Vector2};
-use roadwatch_core::{ImageSize, Location, Rig, RigCamera, Scene, SceneObject};
+use roadwatch_core::{ImageSize, Rig, RigCamera, Scene, SceneObject, Track};
 
 const SIDE_PX: u32 = 1000;
 /// From the middle to each edge at least, metres: a street and its crossing.
@@ -21,7 +21,8 @@ const VEHICLE_M: (f64, f64) = (4.6, 1.85);
 const ARROW_SHARE: f64 = 0.8;
 const ELLIPSE_CORNERS: usize = 40;
 
-/// Ahead is up, ten metres between two rings, and around each object the ellipse of one standard deviation.
+/// Ahead is up, ten metres between two rings, around each object the ellipse of one standard deviation, behind it
+/// its trail.
 ///
 /// # Errors
 /// When OpenCV refuses.
@@ -59,7 +60,7 @@ struct Map {
 impl Map {
     fn around(scene: &Scene) -> Self {
         let farthest = scene.objects.iter().map(|object| {
-            let position = object.track.observed.located.location.position;
+            let position = object.track.position();
             position.x().abs().max(position.y().abs())
         });
         let reach_m = (farthest.fold(0.0, f64::max) + MARGIN_M).clamp(MIN_REACH_M, MAX_REACH_M);
@@ -128,37 +129,38 @@ fn vehicle(canvas: &mut Canvas, map: &Map) -> Result<(), DrawError> {
 }
 
 fn draw_object(canvas: &mut Canvas, map: &Map, object: &SceneObject) -> Result<(), DrawError> {
-    let observed = &object.track.observed;
-    let location = &observed.located.location;
-    let class = observed.located.detection.class.as_str();
-    let colour = palette::of_class(class);
-    let footprint = Cuboid::of(observed)
+    let track = &object.track;
+    let colour = palette::of_identity(track.id);
+    let footprint = Cuboid::of(track)
         .footprint()
         .map(|corner| map.place(corner.xy()));
-    let center = location.position.coords.coords.xy();
+    let center = track.position().coords.coords.xy();
+    let trail: Vec<At> = object
+        .trail
+        .iter()
+        .map(|p| map.place(p.coords.coords.xy()))
+        .collect();
+    for step in trail.windows(2) {
+        canvas.line(step[0], step[1], colour, 1)?;
+    }
     canvas.tint(&footprint, colour, 0.6)?;
     canvas.outline(&footprint, colour, 1)?;
-    canvas.outline(&ellipse(map, location), colour, 1)?;
-    if let Some(kept) = observed.heading {
-        let (sin, cos) = kept.heading.yaw_rad.sin_cos();
-        let tip = center + Vector2::new(cos, sin) * location.size.length_m * ARROW_SHARE;
+    canvas.outline(&ellipse(map, track), colour, 1)?;
+    if let Some(heading) = track.heading() {
+        let (sin, cos) = heading.yaw_rad.sin_cos();
+        let tip = center + Vector2::new(cos, sin) * track.size().length_m * ARROW_SHARE;
         canvas.line(map.place(center), map.place(tip), colour, 2)?;
     }
     let (x, y) = map.place(center);
-    let text = format!("{class} {}", object.track.id.0);
+    let text = format!("{} {}", track.class(), track.id.0);
     canvas.text(&text, (x + 10.0, y - 6.0), LETTER_PX, colour)
 }
 
 /// One standard deviation of the position on the ground.
-fn ellipse(map: &Map, location: &Location) -> Vec<At> {
-    let center = location.position.coords.coords.xy();
-    let eigen = SymmetricEigen::new(
-        location
-            .covariance
-            .matrix
-            .fixed_view::<2, 2>(0, 0)
-            .into_owned(),
-    );
+fn ellipse(map: &Map, track: &Track) -> Vec<At> {
+    let center = track.position().coords.coords.xy();
+    let covariance = track.covariance().matrix;
+    let eigen = SymmetricEigen::new(covariance.fixed_view::<2, 2>(0, 0).into_owned());
     let axes = eigen.eigenvectors
         * nalgebra::Matrix2::from_diagonal(&eigen.eigenvalues.map(|v| v.max(0.0).sqrt()));
     (0..ELLIPSE_CORNERS)

@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 use roadwatch_core::{
-    BoxPx, CameraId, CameraModel, CameraName, Detection, Distortion, Frame, HeadingCandidates,
+    BoxPx, CameraId, CameraModel, CameraName, Detection, Distortion, Ego, Frame, HeadingCandidates,
     Image, ImageSize, Intrinsics, Located, Location, Method, Mount, ObjectClass, Oriented, Output,
     PerFrame, Perceived, Pixels, Rig, RigCamera, Scene, SceneObject, Score, Sink, SizeLwh,
     SlopeEvidence, Timestamp, Track, TrackId,
@@ -68,6 +68,7 @@ fn car(ahead_m: f64) -> Track {
             heading: None,
             components: Vec::new(),
         },
+        motion: None,
     }
 }
 
@@ -85,6 +86,7 @@ fn perceived(tracks: Vec<Track>) -> Arc<Perceived> {
             items: tracks,
         },
         unlocated: Vec::new(),
+        ego: Ego::default(),
     })
 }
 
@@ -93,10 +95,13 @@ fn scene(seq: u64, tracks: &[Track]) -> Output {
         track: track.clone(),
         seen_by: vec![CameraId(0)],
         seen_at: Timestamp::from_nanos(0),
+        stamp: Timestamp::from_nanos(0),
+        trail: Vec::new(),
     });
     Output::Scene(Arc::new(Scene {
         seq,
         stamp: Timestamp::from_nanos(0),
+        ego: Ego::default(),
         objects: objects.collect(),
     }))
 }

@@ -1,8 +1,8 @@
 //! The perceiving step: from detections to objects with place, heading and identity, for the whole rig.
 
 use roadwatch_core::{
-    Detection, Frame, Heading, KeptHeading, Known, Located, Locator, Oriented, PerFrame, Perceived,
-    Reidentifier, RotationError, RotationEstimator,
+    Detection, EgoMotion, Frame, Heading, KeptHeading, Known, Located, Locator, Oriented, PerFrame,
+    Perceived, Reidentifier, RotationError, RotationEstimator, Round, Scene,
 };
 use std::{
     cmp::Reverse,
@@ -21,6 +21,8 @@ pub struct Perceiver {
     pub rotation: Option<Rotating>,
     /// The only memory.
     pub reidentifier: Box<dyn Reidentifier>,
+    /// Where the vehicle is; told by whoever knows, and not at all by nobody.
+    pub ego: Arc<EgoMotion>,
 }
 
 /// How headings are estimated.
@@ -38,7 +40,8 @@ impl Perceiver {
         &mut self,
         seen: PerFrame<Detection>,
     ) -> (Perceived, Result<(), RotationError>) {
-        let known = self.reidentifier.recall(&seen);
+        let ego = self.ego.at(seen.frame.captured_at);
+        let known = self.reidentifier.recall(&seen, &ego);
         let PerFrame { frame, items } = seen;
         let locator = &self.locators[frame.camera.index()];
         let mut objects = Vec::with_capacity(items.len());
@@ -65,8 +68,24 @@ impl Perceiver {
             frame,
             items: objects,
         };
-        let tracks = self.reidentifier.commit(objects, &unlocated);
-        (Perceived { tracks, unlocated }, rotated)
+        let tracks = self.reidentifier.commit(objects, &unlocated, &ego);
+        let perceived = Perceived {
+            tracks,
+            unlocated,
+            ego,
+        };
+        (perceived, rotated)
+    }
+
+    /// Every object of a completed round.
+    pub fn scene(&mut self, round: &Round) -> Scene {
+        let ego = self.ego.at(round.stamp);
+        Scene {
+            seq: round.seq,
+            stamp: round.stamp,
+            ego,
+            objects: self.reidentifier.scene(round, &ego),
+        }
     }
 }
 

@@ -5,11 +5,11 @@ use crate::{
     inbox,
     metrics::{Edge, Metrics},
     perceive::Perceiver,
-    scene::SceneAssembler,
+    round::RoundAssembler,
     sinking::Fanout,
     warn_limit::WarnLimit,
 };
-use roadwatch_core::{CameraId, Clock, Output, RotationError, Scene};
+use roadwatch_core::{CameraId, Clock, Output, RotationError, Round};
 use std::{
     sync::{
         Arc, Weak,
@@ -20,7 +20,7 @@ use std::{
 
 pub(crate) struct Perceiving {
     pub(crate) perceiver: Perceiver,
-    pub(crate) scenes: SceneAssembler,
+    pub(crate) rounds: RoundAssembler,
     /// Ends with the lanes, so that this thread does not keep it open.
     pub(crate) inbox: Weak<inbox::Receiver>,
     pub(crate) fanout: Fanout,
@@ -33,23 +33,23 @@ impl Perceiving {
     /// Runs until every lane has ended.
     pub(crate) fn run(mut self, detections: &Receiver<Seen>) {
         loop {
-            let wait = self.scenes.due_in(self.clock.now());
-            let scenes = match receive(detections, wait) {
+            let wait = self.rounds.due_in(self.clock.now());
+            let rounds = match receive(detections, wait) {
                 Ok(seen) => self.step(seen),
                 Err(RecvTimeoutError::Timeout) => {
                     let now = self.clock.now();
                     if self.is_busy() {
-                        self.scenes.wait_on(now);
+                        self.rounds.wait_on(now);
                         Vec::new()
                     } else {
-                        self.scenes.tick(now).into_iter().collect()
+                        self.rounds.tick(now).into_iter().collect()
                     }
                 }
                 Err(RecvTimeoutError::Disconnected) => break,
             };
-            self.publish_scenes(scenes);
+            self.publish_scenes(rounds);
         }
-        let last = self.scenes.close();
+        let last = self.rounds.close();
         self.publish_scenes(last);
     }
 
@@ -58,7 +58,7 @@ impl Perceiving {
         self.inbox.upgrade().is_some_and(|inbox| inbox.is_busy())
     }
 
-    fn step(&mut self, seen: Seen) -> Vec<Scene> {
+    fn step(&mut self, seen: Seen) -> Vec<Round> {
         let perceived = seen.detections.map(|detections| {
             let received_at = detections.frame.received_at;
             let (perceived, rotated) = self.perceiver.perceive(detections);
@@ -82,7 +82,7 @@ impl Perceiving {
                 .send(&Output::Camera(Arc::clone(&perceived)), Some(received_at));
             perceived
         });
-        self.scenes
+        self.rounds
             .offer(seen.camera, perceived, &seen.live, self.clock.now())
     }
 
@@ -92,8 +92,9 @@ impl Perceiving {
         }
     }
 
-    fn publish_scenes(&self, scenes: impl IntoIterator<Item = Scene>) {
-        for scene in scenes {
+    fn publish_scenes(&mut self, rounds: impl IntoIterator<Item = Round>) {
+        for round in rounds {
+            let scene = self.perceiver.scene(&round);
             self.metrics.scene();
             self.fanout.send(&Output::Scene(Arc::new(scene)), None);
         }

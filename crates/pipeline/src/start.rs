@@ -8,8 +8,8 @@ use crate::{
     options::{Overload, PipelineOptions},
     perceive::Perceiver,
     perceiving::Perceiving,
+    round::RoundAssembler,
     running::{Running, Threads},
-    scene::SceneAssembler,
     sinking::{Fanout, Sinking},
     stop::Stop,
     warn_limit::WarnLimit,
@@ -156,7 +156,7 @@ impl Starting {
         let step = Perceiving {
             perceiver,
             inbox,
-            scenes: SceneAssembler::new(match self.options.overload {
+            rounds: RoundAssembler::new(match self.options.overload {
                 Overload::NewestWins => Some(self.options.scene_timeout),
                 Overload::Wait => None,
             }),

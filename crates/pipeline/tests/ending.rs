@@ -74,6 +74,7 @@ fn a_detector_that_panics_ends_the_run_with_its_name() {
             locators: vec![Box::new(Nowhere) as Box<dyn Locator>],
             rotation: None,
             reidentifier: Box::new(NoMemory),
+            ego: Arc::default(),
         },
         sinks: Vec::new(),
     };
@@ -153,6 +154,7 @@ fn cameras_and_locators_must_be_as_many() {
             locators: Vec::new(),
             rotation: None,
             reidentifier: Box::new(NoMemory),
+            ego: Arc::default(),
         },
         sinks: Vec::new(),
     };

@@ -81,6 +81,7 @@ fn a_frame_without_headings_is_counted_and_published_all_the_same() {
                 crops_per_frame: Arc::new(AtomicUsize::new(1)),
             }),
             reidentifier: Box::new(NoMemory),
+            ego: Arc::default(),
         },
         sinks: vec![NamedSink {
             name: "channel".to_owned(),

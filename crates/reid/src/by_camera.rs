@@ -3,7 +3,7 @@
 use crate::{ground_memory::GroundMemory, rule::Rule};
 use nalgebra::Matrix2;
 use roadwatch_core::{
-    BoxPx, CameraId, Detection, Frame, Heading, KeptHeading, Known, Location, ObjectClass,
+    BoxPx, CameraId, Detection, Ego, Frame, Heading, KeptHeading, Known, Location, ObjectClass,
     Oriented, PerFrame, Prior, Reidentifier, Timestamp, Track, TrackId,
 };
 use std::{collections::BTreeMap, time::Duration};
@@ -167,7 +167,7 @@ impl ByCamera {
 impl Reidentifier for ByCamera {
     /// Each detection gets what the object at its place left behind; `None` when there was none, when it was of another
     /// class, or when it never had a location.
-    fn recall(&self, seen: &PerFrame<Detection>) -> Vec<Known> {
+    fn recall(&self, seen: &PerFrame<Detection>, _: &Ego) -> Vec<Known> {
         let Frame {
             camera,
             captured_at,
@@ -204,7 +204,12 @@ impl Reidentifier for ByCamera {
     }
 
     /// Items come back in the order they were given in.
-    fn commit(&mut self, mut seen: PerFrame<Oriented>, unlocated: &[Detection]) -> PerFrame<Track> {
+    fn commit(
+        &mut self,
+        mut seen: PerFrame<Oriented>,
+        unlocated: &[Detection],
+        _: &Ego,
+    ) -> PerFrame<Track> {
         let (camera, at) = (seen.frame.camera, seen.frame.captured_at);
         let located = seen.items.iter().map(|one| &one.located.detection);
         let objects: Vec<_> = located
@@ -241,6 +246,7 @@ impl Reidentifier for ByCamera {
         let track = |(observed, place)| Track {
             id: self.identity(camera, place),
             observed,
+            motion: None,
         };
         PerFrame {
             items: seen.items.into_iter().zip(order).map(track).collect(),

@@ -1,14 +1,12 @@
 //! Who gets which place in a camera's row.
 
-use pathfinding::{kuhn_munkres::kuhn_munkres, matrix::Matrix};
+use crate::assignment::{Pair, assign};
 use roadwatch_core::{BoxPx, ObjectClass};
 use std::time::Duration;
 
 /// Boxes of one object overlap at least so much from one frame to the next (intersection over union); at 10 Hz, cars at
 /// city speeds do by far.
 const LEAST_OVERLAP: f32 = 0.2;
-/// Overlaps are compared in whole numbers of this size.
-const UNIT: f32 = 1e-6;
 /// An object that nobody saw for so long is gone: its box has moved on.
 const FORGOTTEN_AFTER: Duration = Duration::from_secs(1);
 
@@ -26,19 +24,6 @@ pub enum Rule {
 }
 
 impl Rule {
-    /// Every rule with its name.
-    pub const ALL: [(&str, Self); 2] =
-        [("left_to_right", Self::LeftToRight), ("iou", Self::Overlap)];
-
-    /// Its name.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::LeftToRight => "left_to_right",
-            Self::Overlap => "iou",
-        }
-    }
-
     /// How long somebody's place is kept; nothing for those who were not in the last frame, when that is zero.
     pub(crate) fn lasts(self) -> Duration {
         match self {
@@ -87,39 +72,25 @@ fn by_overlap(
     known: &[(usize, &BoxPx, &ObjectClass)],
     mut next: usize,
 ) -> Vec<usize> {
-    let overlap = |object: usize, before: usize| -> i64 {
-        let ((box_px, class), (_, box_before, class_before)) = (objects[object], known[before]);
-        let iou = box_px.iou(box_before);
-        match class == class_before && iou >= LEAST_OVERLAP {
-            true => (iou / UNIT).round() as i64,
-            false => 0,
-        }
-    };
-    let mut places = vec![None; objects.len()];
-    if !objects.is_empty() {
-        // With columns to spare, because the solver wants no more rows than columns: who takes one is new.
-        let columns = known.len() + objects.len();
-        let weights = Matrix::from_fn(objects.len(), columns, |(object, column)| {
-            if column < known.len() {
-                overlap(object, column)
-            } else {
-                0
-            }
-        });
-        let (_, taken) = kuhn_munkres(&weights);
-        for (object, column) in taken.into_iter().enumerate() {
-            if weights[(object, column)] > 0 {
-                places[object] = Some(known[column].0);
+    let mut pairs = Vec::new();
+    for (row, (box_px, class)) in objects.iter().enumerate() {
+        for (column, (_, before, class_before)) in known.iter().enumerate() {
+            let iou = box_px.iou(before);
+            if class == class_before && iou >= LEAST_OVERLAP {
+                let gain = f64::from(iou);
+                pairs.push(Pair { row, column, gain });
             }
         }
     }
+    let taken = assign(objects.len(), known.len(), &pairs).into_iter();
+    let places = taken.map(|column| column.map(|column| known[column].0));
     let mut placed = |place: Option<usize>| {
         place.unwrap_or_else(|| {
             next += 1;
             next - 1
         })
     };
-    places.into_iter().map(&mut placed).collect()
+    places.map(&mut placed).collect()
 }
 
 #[cfg(test)]

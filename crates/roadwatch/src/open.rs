@@ -1,5 +1,6 @@
 //! From configuration to the parts of a pipeline: everything that can fail at start fails here.
 
+mod ego;
 mod ros_images;
 mod sources;
 
@@ -16,6 +17,7 @@ use std::sync::{Arc, atomic::AtomicUsize};
 
 const CURVE_KEY: &str = "rotation.position_curve";
 
+pub use ego::{ego, ego_source};
 pub use ros_images::encoded;
 pub use sources::{Feed, sources};
 

@@ -2,22 +2,21 @@
 
 use crate::{
     clock::SystemClock,
-    config::{Changes, Config, Environment, Mistakes},
+    config::{Changes, Config, EgoConfig, Environment, Mistakes},
     failure::Failure,
     open::{self, Feed},
     switches::Switches,
 };
 use anyhow::Context as _;
 use roadwatch_camera::{DecodeCount, PlaybackOptions};
-use roadwatch_core::{Locator, Rig};
+use roadwatch_core::{EgoMotion, Locator, Rig};
 use roadwatch_detect::YoloDetector;
 use roadwatch_pipeline::{
     NamedSink, Outcome, PipelineOptions, Running, Stages,
     perceive::{Perceiver, Rotating},
     start,
 };
-use roadwatch_reid::ByCamera;
-use roadwatch_ros::{RosError, RosNode};
+use roadwatch_ros::{EgoListener, RosError, RosNode};
 use std::{
     sync::{Arc, atomic::AtomicUsize},
     time::{Duration, Instant},
@@ -40,6 +39,8 @@ pub struct Session {
     detector: Arc<YoloDetector>,
     locators: Vec<Box<dyn Locator>>,
     rotation: Option<Rotating>,
+    /// Where the vehicle is.
+    pub ego: Arc<EgoMotion>,
 }
 
 /// What can be changed while it runs.
@@ -69,7 +70,8 @@ impl Session {
         let detector = open::detector(&config, &mut notes);
         let locators = open::locators(&config, &mut notes);
         let rotation = open::rotation(&config, &mut notes);
-        let feeds = open::sources(&config, playback, &decodes, &mut notes);
+        let ego = open::ego(&config, &mut notes);
+        let feeds = open::sources(&config, playback, (&decodes, &ego), &mut notes);
         let rig = open::shared_rig(&config);
         notes.finish()?;
         match (rig, feeds, detector, locators, rotation) {
@@ -89,17 +91,19 @@ impl Session {
                     detector,
                     locators,
                     rotation,
+                    ego,
                 })
             }
             _ => unreachable!("what could not be opened was noted"),
         }
     }
 
-    /// Whether topics feed cameras.
+    /// Whether topics feed cameras, or tell where the vehicle is.
     #[must_use]
     pub fn has_topics(&self) -> bool {
         let is_topic = |feed: &Feed| matches!(feed, Feed::Topic { .. });
-        self.feeds.iter().any(is_topic)
+        let told = matches!(self.config.ego, EgoConfig::Ros { bag: None, .. });
+        told || self.feeds.iter().any(is_topic)
     }
 
     /// With those cameras listening that topics feed.
@@ -110,6 +114,18 @@ impl Session {
         let feeds = self.feeds.into_iter().map(|feed| feed.listening(node));
         self.feeds = feeds.collect::<Result<_, _>>()?;
         Ok(self)
+    }
+
+    /// Who listens to where the vehicle is, as long as it is kept; `None` where no topic tells.
+    ///
+    /// # Errors
+    /// When the middleware refuses.
+    pub fn ego_listener(&self, node: &RosNode) -> Result<Option<EgoListener>, RosError> {
+        let EgoConfig::Ros { bag: None, topic } = &self.config.ego else {
+            return Ok(None);
+        };
+        let source = open::ego_source(topic, node.surface());
+        EgoListener::listen(node, source, Arc::clone(&self.ego)).map(Some)
     }
 
     /// Starts the pipeline.
@@ -130,16 +146,16 @@ impl Session {
             )),
         });
         let sources = sources.collect::<Result<Vec<_>, _>>()?;
+        let memory = self.config.locate.ground_memory;
+        let reidentifier = self.config.reid.reidentifier(&self.rig, memory);
         let stages = Stages {
             sources: self.controls.switches.put_before(sources),
             detector: self.detector,
             perceiver: Perceiver {
                 locators: self.locators,
                 rotation: self.rotation,
-                reidentifier: Box::new(ByCamera::new(
-                    self.config.reid,
-                    self.config.locate.ground_memory,
-                )),
+                reidentifier,
+                ego: self.ego,
             },
             sinks,
         };

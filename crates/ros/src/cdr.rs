@@ -87,6 +87,8 @@ mod tests {
             &[0, 0, 0],       // to the next multiple of four
             &[1, 0, 0, 0, 0], // camera: the empty text is one zero
             &[0, 0, 0],
+            &[1, 0, 0, 0, 0], // ego_motion, too
+            &[0, 0, 0],
             &[0, 0, 0, 0], // no objects
         ]
         .concat();

@@ -10,7 +10,7 @@ mod seen;
 
 use crate::{
     msg::{
-        autoware_perception_msgs::DetectedObjects,
+        autoware_perception_msgs::{DetectedObjects, TrackedObjects},
         roadwatch_msgs::ObjectArray,
         sensor_msgs::{CameraInfo, CompressedImage},
         tf2_msgs::TFMessage,
@@ -20,8 +20,9 @@ use crate::{
     surface::{InvalidSurface, Surface},
     topics::{Topic, TopicKind, Topics},
 };
+use nalgebra::Isometry3;
 use roadwatch_core::{CameraId, Output, Perceived, Rig, Scene, Timestamp};
-use seen::SeenTogether;
+use seen::{PublishedIn, SeenTogether};
 use serde::Serialize;
 use std::{ops::Range, sync::Arc};
 
@@ -48,6 +49,8 @@ pub enum Message {
     TfStatic(TFMessage),
     /// For [`TopicKind::DetectedObjects`].
     DetectedObjects(DetectedObjects),
+    /// For [`TopicKind::TrackedObjects`].
+    TrackedObjects(TrackedObjects),
     /// For [`TopicKind::Image`].
     Image(CompressedImage),
 }
@@ -64,6 +67,7 @@ impl Message {
             Self::CameraInfo(_) => TopicKind::CameraInfo,
             Self::TfStatic(_) => TopicKind::TfStatic,
             Self::DetectedObjects(_) => TopicKind::DetectedObjects,
+            Self::TrackedObjects(_) => TopicKind::TrackedObjects,
             Self::Image(_) => TopicKind::Image,
         }
     }
@@ -83,6 +87,7 @@ pub struct Outgoing {
 pub struct Messages {
     rig: Arc<Rig>,
     base_frame: String,
+    scene_in_odom: Option<String>,
     topics: Topics,
 }
 
@@ -96,6 +101,7 @@ impl Messages {
         Ok(Self {
             topics: Topics::new(&rig, surface),
             base_frame: surface.base_frame.clone(),
+            scene_in_odom: surface.scene_in_odom.clone(),
             rig,
         })
     }
@@ -157,7 +163,11 @@ impl Messages {
             return Vec::new();
         }
         let camera = self.rig.camera(perceived.tracks.frame.camera);
-        let seen = SeenTogether::in_camera(&self.rig, &self.base_frame, &perceived.tracks);
+        let seen = SeenTogether::in_camera(
+            &self.rig,
+            &self.base_frame,
+            (&perceived.tracks, perceived.ego),
+        );
         self.addressed(topics, |kind| match kind {
             TopicKind::Detections2d => Message::Detections2d(detections::detections_2d(
                 &seen,
@@ -175,8 +185,22 @@ impl Messages {
         if topics.is_empty() {
             return Vec::new();
         }
-        let seen = SeenTogether::in_scene(&self.rig, &self.base_frame, scene);
+        let seen = SeenTogether::in_scene(&self.rig, &self.scene_frame(scene), scene);
         self.addressed(topics, |kind| of_objects(kind, &seen))
+    }
+
+    /// Base_link, or odom where that is asked for.
+    fn scene_frame(&self, scene: &Scene) -> PublishedIn<'_> {
+        match &self.scene_in_odom {
+            Some(odom_frame) => PublishedIn {
+                name: odom_frame,
+                from_base: scene.ego.odom_from_base.isometry,
+            },
+            None => PublishedIn {
+                name: &self.base_frame,
+                from_base: Isometry3::identity(),
+            },
+        }
     }
 
     fn addressed(
@@ -198,6 +222,7 @@ fn of_objects(kind: TopicKind, seen: &SeenTogether<'_>) -> Message {
         TopicKind::Detections3d => Message::Detections3d(detections::detections_3d(seen)),
         TopicKind::Markers => Message::Markers(markers::markers(seen)),
         TopicKind::DetectedObjects => Message::DetectedObjects(autoware::detected_objects(seen)),
+        TopicKind::TrackedObjects => Message::TrackedObjects(autoware::tracked_objects(seen)),
         _ => Message::Objects(objects::objects(seen)),
     }
 }

@@ -3,204 +3,81 @@
 //! Those of `roadwatch_msgs` are the files of the ament package itself; the others restate the fields
 //! of ROS 2 Jazzy's packages (`vision_msgs` 4), which Humble shares. Bags carry them as schemas.
 
+/// A definition of another package, as `msg/` restates it.
+macro_rules! restated {
+    ($name:literal) => {
+        ($name, include_str!(concat!("../msg/", $name, ".msg")))
+    };
+}
+
+/// A definition of `roadwatch_msgs`.
+macro_rules! own {
+    ($name:literal) => {
+        (
+            concat!("roadwatch_msgs/", $name),
+            include_str!(concat!("../../../msgs/roadwatch_msgs/msg/", $name, ".msg")),
+        )
+    };
+}
+
 /// Text of each definition by `package/Type`, in alphabetical order.
 const DEFINITIONS: &[(&str, &str)] = &[
-    (
-        "autoware_perception_msgs/DetectedObject",
-        include_str!("../msg/autoware_perception_msgs/DetectedObject.msg"),
-    ),
-    (
-        "autoware_perception_msgs/DetectedObjectKinematics",
-        include_str!("../msg/autoware_perception_msgs/DetectedObjectKinematics.msg"),
-    ),
-    (
-        "autoware_perception_msgs/DetectedObjects",
-        include_str!("../msg/autoware_perception_msgs/DetectedObjects.msg"),
-    ),
-    (
-        "autoware_perception_msgs/ObjectClassification",
-        include_str!("../msg/autoware_perception_msgs/ObjectClassification.msg"),
-    ),
-    (
-        "autoware_perception_msgs/Shape",
-        include_str!("../msg/autoware_perception_msgs/Shape.msg"),
-    ),
-    (
-        "builtin_interfaces/Duration",
-        include_str!("../msg/builtin_interfaces/Duration.msg"),
-    ),
-    (
-        "builtin_interfaces/Time",
-        include_str!("../msg/builtin_interfaces/Time.msg"),
-    ),
-    (
-        "diagnostic_msgs/DiagnosticArray",
-        include_str!("../msg/diagnostic_msgs/DiagnosticArray.msg"),
-    ),
-    (
-        "diagnostic_msgs/DiagnosticStatus",
-        include_str!("../msg/diagnostic_msgs/DiagnosticStatus.msg"),
-    ),
-    (
-        "diagnostic_msgs/KeyValue",
-        include_str!("../msg/diagnostic_msgs/KeyValue.msg"),
-    ),
-    (
-        "geometry_msgs/Point",
-        include_str!("../msg/geometry_msgs/Point.msg"),
-    ),
-    (
-        "geometry_msgs/Point32",
-        include_str!("../msg/geometry_msgs/Point32.msg"),
-    ),
-    (
-        "geometry_msgs/Polygon",
-        include_str!("../msg/geometry_msgs/Polygon.msg"),
-    ),
-    (
-        "geometry_msgs/Pose",
-        include_str!("../msg/geometry_msgs/Pose.msg"),
-    ),
-    (
-        "geometry_msgs/PoseWithCovariance",
-        include_str!("../msg/geometry_msgs/PoseWithCovariance.msg"),
-    ),
-    (
-        "geometry_msgs/Quaternion",
-        include_str!("../msg/geometry_msgs/Quaternion.msg"),
-    ),
-    (
-        "geometry_msgs/Transform",
-        include_str!("../msg/geometry_msgs/Transform.msg"),
-    ),
-    (
-        "geometry_msgs/TransformStamped",
-        include_str!("../msg/geometry_msgs/TransformStamped.msg"),
-    ),
-    (
-        "geometry_msgs/Twist",
-        include_str!("../msg/geometry_msgs/Twist.msg"),
-    ),
-    (
-        "geometry_msgs/TwistWithCovariance",
-        include_str!("../msg/geometry_msgs/TwistWithCovariance.msg"),
-    ),
-    (
-        "geometry_msgs/Vector3",
-        include_str!("../msg/geometry_msgs/Vector3.msg"),
-    ),
-    (
-        "lifecycle_msgs/State",
-        include_str!("../msg/lifecycle_msgs/State.msg"),
-    ),
-    (
-        "lifecycle_msgs/Transition",
-        include_str!("../msg/lifecycle_msgs/Transition.msg"),
-    ),
-    (
-        "lifecycle_msgs/TransitionEvent",
-        include_str!("../msg/lifecycle_msgs/TransitionEvent.msg"),
-    ),
-    (
-        "roadwatch_msgs/KeyComponent",
-        include_str!("../../../msgs/roadwatch_msgs/msg/KeyComponent.msg"),
-    ),
-    (
-        "roadwatch_msgs/Object",
-        include_str!("../../../msgs/roadwatch_msgs/msg/Object.msg"),
-    ),
-    (
-        "roadwatch_msgs/ObjectArray",
-        include_str!("../../../msgs/roadwatch_msgs/msg/ObjectArray.msg"),
-    ),
-    (
-        "rosgraph_msgs/Clock",
-        include_str!("../msg/rosgraph_msgs/Clock.msg"),
-    ),
-    (
-        "sensor_msgs/CameraInfo",
-        include_str!("../msg/sensor_msgs/CameraInfo.msg"),
-    ),
-    (
-        "sensor_msgs/CompressedImage",
-        include_str!("../msg/sensor_msgs/CompressedImage.msg"),
-    ),
-    (
-        "sensor_msgs/Image",
-        include_str!("../msg/sensor_msgs/Image.msg"),
-    ),
-    (
-        "sensor_msgs/RegionOfInterest",
-        include_str!("../msg/sensor_msgs/RegionOfInterest.msg"),
-    ),
-    (
-        "std_msgs/ColorRGBA",
-        include_str!("../msg/std_msgs/ColorRGBA.msg"),
-    ),
-    (
-        "std_msgs/Header",
-        include_str!("../msg/std_msgs/Header.msg"),
-    ),
-    (
-        "tf2_msgs/TFMessage",
-        include_str!("../msg/tf2_msgs/TFMessage.msg"),
-    ),
-    (
-        "vision_msgs/BoundingBox2D",
-        include_str!("../msg/vision_msgs/BoundingBox2D.msg"),
-    ),
-    (
-        "vision_msgs/BoundingBox3D",
-        include_str!("../msg/vision_msgs/BoundingBox3D.msg"),
-    ),
-    (
-        "vision_msgs/Detection2D",
-        include_str!("../msg/vision_msgs/Detection2D.msg"),
-    ),
-    (
-        "vision_msgs/Detection2DArray",
-        include_str!("../msg/vision_msgs/Detection2DArray.msg"),
-    ),
-    (
-        "vision_msgs/Detection3D",
-        include_str!("../msg/vision_msgs/Detection3D.msg"),
-    ),
-    (
-        "vision_msgs/Detection3DArray",
-        include_str!("../msg/vision_msgs/Detection3DArray.msg"),
-    ),
-    (
-        "vision_msgs/ObjectHypothesis",
-        include_str!("../msg/vision_msgs/ObjectHypothesis.msg"),
-    ),
-    (
-        "vision_msgs/ObjectHypothesisWithPose",
-        include_str!("../msg/vision_msgs/ObjectHypothesisWithPose.msg"),
-    ),
-    (
-        "vision_msgs/Point2D",
-        include_str!("../msg/vision_msgs/Point2D.msg"),
-    ),
-    (
-        "vision_msgs/Pose2D",
-        include_str!("../msg/vision_msgs/Pose2D.msg"),
-    ),
-    (
-        "visualization_msgs/Marker",
-        include_str!("../msg/visualization_msgs/Marker.msg"),
-    ),
-    (
-        "visualization_msgs/MarkerArray",
-        include_str!("../msg/visualization_msgs/MarkerArray.msg"),
-    ),
-    (
-        "visualization_msgs/MeshFile",
-        include_str!("../msg/visualization_msgs/MeshFile.msg"),
-    ),
-    (
-        "visualization_msgs/UVCoordinate",
-        include_str!("../msg/visualization_msgs/UVCoordinate.msg"),
-    ),
+    restated!("autoware_perception_msgs/DetectedObject"),
+    restated!("autoware_perception_msgs/DetectedObjectKinematics"),
+    restated!("autoware_perception_msgs/DetectedObjects"),
+    restated!("autoware_perception_msgs/ObjectClassification"),
+    restated!("autoware_perception_msgs/Shape"),
+    restated!("autoware_perception_msgs/TrackedObject"),
+    restated!("autoware_perception_msgs/TrackedObjectKinematics"),
+    restated!("autoware_perception_msgs/TrackedObjects"),
+    restated!("builtin_interfaces/Duration"),
+    restated!("builtin_interfaces/Time"),
+    restated!("diagnostic_msgs/DiagnosticArray"),
+    restated!("diagnostic_msgs/DiagnosticStatus"),
+    restated!("diagnostic_msgs/KeyValue"),
+    restated!("geometry_msgs/Accel"),
+    restated!("geometry_msgs/AccelWithCovariance"),
+    restated!("geometry_msgs/Point"),
+    restated!("geometry_msgs/Point32"),
+    restated!("geometry_msgs/Polygon"),
+    restated!("geometry_msgs/Pose"),
+    restated!("geometry_msgs/PoseWithCovariance"),
+    restated!("geometry_msgs/Quaternion"),
+    restated!("geometry_msgs/Transform"),
+    restated!("geometry_msgs/TransformStamped"),
+    restated!("geometry_msgs/Twist"),
+    restated!("geometry_msgs/TwistWithCovariance"),
+    restated!("geometry_msgs/Vector3"),
+    restated!("lifecycle_msgs/State"),
+    restated!("lifecycle_msgs/Transition"),
+    restated!("lifecycle_msgs/TransitionEvent"),
+    restated!("nav_msgs/Odometry"),
+    own!("KeyComponent"),
+    own!("Object"),
+    own!("ObjectArray"),
+    restated!("rosgraph_msgs/Clock"),
+    restated!("sensor_msgs/CameraInfo"),
+    restated!("sensor_msgs/CompressedImage"),
+    restated!("sensor_msgs/Image"),
+    restated!("sensor_msgs/RegionOfInterest"),
+    restated!("std_msgs/ColorRGBA"),
+    restated!("std_msgs/Header"),
+    restated!("tf2_msgs/TFMessage"),
+    restated!("unique_identifier_msgs/UUID"),
+    restated!("vision_msgs/BoundingBox2D"),
+    restated!("vision_msgs/BoundingBox3D"),
+    restated!("vision_msgs/Detection2D"),
+    restated!("vision_msgs/Detection2DArray"),
+    restated!("vision_msgs/Detection3D"),
+    restated!("vision_msgs/Detection3DArray"),
+    restated!("vision_msgs/ObjectHypothesis"),
+    restated!("vision_msgs/ObjectHypothesisWithPose"),
+    restated!("vision_msgs/Point2D"),
+    restated!("vision_msgs/Pose2D"),
+    restated!("visualization_msgs/Marker"),
+    restated!("visualization_msgs/MarkerArray"),
+    restated!("visualization_msgs/MeshFile"),
+    restated!("visualization_msgs/UVCoordinate"),
 ];
 
 /// What rosbag2 puts between the definitions of one schema.
@@ -339,6 +216,7 @@ mod tests {
                 "std_msgs/Header",
                 "roadwatch_msgs/Object",
                 "builtin_interfaces/Time",
+                "unique_identifier_msgs/UUID",
                 "geometry_msgs/Point",
                 "geometry_msgs/Vector3",
                 "roadwatch_msgs/KeyComponent",

@@ -1,9 +1,12 @@
-//! Images that others publish or recorded, as a camera's frames.
+//! What others publish or recorded: images as a camera's frames, odometry and transforms as the vehicle's motion.
 
 mod bag_file;
 mod bag_images;
+mod bag_messages;
 mod camera_info_check;
+mod ego;
 mod image_topic;
+mod transforms;
 
 use crate::msg::{
     sensor_msgs::{CompressedImage, Image},
@@ -12,6 +15,7 @@ use crate::msg::{
 use roadwatch_core::Timestamp;
 
 pub use bag_images::{BagImages, BagImagesError, BagSpan};
+pub use ego::{EgoListener, EgoSource, tell_from_bag};
 pub use image_topic::{ImageTopic, ToImage, TopicCamera};
 
 /// ROS's customary end of the names of topics with compressed images (`image_transport`).

@@ -26,7 +26,9 @@ mod testing;
 
 pub use bag::{BagError, BagOptions, BagSink, LogTime};
 pub use convert::{Message, Messages, Outgoing};
-pub use input::{BagImages, ImageMessage, ImageTopic, TopicCamera};
+pub use input::{
+    BagImages, EgoListener, EgoSource, ImageMessage, ImageTopic, TopicCamera, tell_from_bag,
+};
 pub use lifecycle::Lifecycle;
 pub use node::{Network, Outlet, RosError, RosNode, RosOptions, Service};
 pub use parameters::{Parameter, ParameterValue, Parameters};

@@ -8,11 +8,13 @@ pub mod builtin_interfaces;
 pub mod diagnostic_msgs;
 pub mod geometry_msgs;
 pub mod lifecycle_msgs;
+pub mod nav_msgs;
 pub mod roadwatch_msgs;
 pub mod rosgraph_msgs;
 pub mod sensor_msgs;
 pub mod std_msgs;
 pub mod tf2_msgs;
+pub mod unique_identifier_msgs;
 pub mod vision_msgs;
 pub mod visualization_msgs;
 

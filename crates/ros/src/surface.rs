@@ -16,6 +16,8 @@ pub struct Surface {
     pub namespace: String,
     /// tf frame of the vehicle that positions are given in.
     pub base_frame: String,
+    /// tf frame that the scene is published in instead, fixed to the ground; `None` publishes it in `base_frame`.
+    pub scene_in_odom: Option<String>,
     /// Messages that a per-frame topic keeps for slow readers; at least 1.
     pub queue_depth: usize,
     /// Whether the scene is published as Autoware's messages, too.
@@ -31,6 +33,7 @@ impl Default for Surface {
             node_name: "roadwatch".to_owned(),
             namespace: "/".to_owned(),
             base_frame: "base_link".to_owned(),
+            scene_in_odom: None,
             queue_depth: DEFAULT_QUEUE_DEPTH,
             autoware: false,
             remapped: Vec::new(),
@@ -73,9 +76,10 @@ impl Surface {
         if !is_namespace(&self.namespace) {
             return Err(InvalidSurface::Namespace(self.namespace.clone()));
         }
-        let frame = &self.base_frame;
-        if frame.is_empty() || frame.starts_with('/') || frame.contains(char::is_whitespace) {
-            return Err(InvalidSurface::BaseFrame(frame.clone()));
+        for frame in std::iter::once(&self.base_frame).chain(&self.scene_in_odom) {
+            if frame.is_empty() || frame.starts_with('/') || frame.contains(char::is_whitespace) {
+                return Err(InvalidSurface::BaseFrame(frame.clone()));
+            }
         }
         if self.queue_depth == 0 {
             return Err(InvalidSurface::QueueDepth);

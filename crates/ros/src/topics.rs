@@ -21,6 +21,8 @@ pub enum TopicKind {
     TfStatic,
     /// The objects as Autoware takes them.
     DetectedObjects,
+    /// The tracked objects as Autoware takes them.
+    TrackedObjects,
     /// The camera's images as they came; recorded on request, never published.
     Image,
 }
@@ -43,7 +45,7 @@ struct Row {
 
 impl TopicKind {
     /// Every kind.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Objects,
         Self::Detections2d,
         Self::Detections3d,
@@ -51,6 +53,7 @@ impl TopicKind {
         Self::CameraInfo,
         Self::TfStatic,
         Self::DetectedObjects,
+        Self::TrackedObjects,
         Self::Image,
     ];
 
@@ -79,6 +82,11 @@ impl TopicKind {
             Self::DetectedObjects => (
                 "detected_objects",
                 "autoware_perception_msgs/DetectedObjects",
+                Volatile,
+            ),
+            Self::TrackedObjects => (
+                "tracked_objects",
+                "autoware_perception_msgs/TrackedObjects",
                 Volatile,
             ),
             Self::Image => ("image/compressed", "sensor_msgs/CompressedImage", Volatile),
@@ -150,6 +158,7 @@ impl Topics {
         list.extend(TopicKind::PER_SCENE.map(|kind| below("scene", kind)));
         if surface.autoware {
             list.push(below("scene", TopicKind::DetectedObjects));
+            list.push(below("scene", TopicKind::TrackedObjects));
         }
         Self {
             list,

@@ -63,7 +63,7 @@ def _add_render(commands) -> None:
 def _add_scenario(commands) -> None:
     from .scenarios import SCENARIOS
 
-    names = "\n".join(f"  {name:14} {scenario.about}" for name, scenario in SCENARIOS.items())
+    names = "\n".join(f"  {name:19} {scenario.about}" for name, scenario in SCENARIOS.items())
     command = commands.add_parser(
         "scenario", help="render a scenario by name", description=f"Renders one of these scenarios:\n{names}",
         formatter_class=argparse.RawDescriptionHelpFormatter,

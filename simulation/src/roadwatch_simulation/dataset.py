@@ -54,15 +54,18 @@ def write_dataset(
 
 
 def frame_line(scene: Scene, frame: int) -> str:
-    """A line of frames.jsonl. Stamps are seconds with all nine digits, which a float would not keep."""
+    """A line of frames.jsonl. Stamps are seconds with all nine digits, which a float would not keep.
+
+    The vehicle's pose is that at the frame's own moment, `ego_stamp`, whenever its cameras fire.
+    """
     moments = {mount.name: stamp_text(scene.stamp_ns(frame, mount)) for mount in scene.cameras}
     stamps = ", ".join(f'"{name}": {stamp}' for name, stamp in moments.items())
     world_from_base, _ = scene.at(frame)
     position = json.dumps([round(float(value), 6) for value in world_from_base[:3, 3]])
     orientation = json.dumps(list(quaternion_wxyz(world_from_base[:3, :3])))
     return (
-        f'{{"frame": {frame}, "stamp": {{{stamps}}}, "ego_position_world_m": {position}, '
-        f'"ego_orientation_world_wxyz": {orientation}}}\n'
+        f'{{"frame": {frame}, "stamp": {{{stamps}}}, "ego_stamp": {stamp_text(scene.stamp_ns(frame))}, '
+        f'"ego_position_world_m": {position}, "ego_orientation_world_wxyz": {orientation}}}\n'
     )
 
 

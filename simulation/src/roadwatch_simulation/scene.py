@@ -97,10 +97,11 @@ class Scene:
         """When a frame is, from frame 0."""
         return frame / self.rate_hz
 
-    def stamp_ns(self, frame: int, camera: CameraMount) -> int:
-        """When a camera captured a frame, nanoseconds since 1970."""
+    def stamp_ns(self, frame: int, camera: CameraMount | None = None) -> int:
+        """When a camera captured a frame, or the frame's own moment, nanoseconds since 1970."""
         period_ns = round(frame * 1_000_000_000 / self.rate_hz)
-        return FIRST_STAMP_NS + period_ns + round(camera.delay_s * 1_000_000_000)
+        delay_ns = round(camera.delay_s * 1_000_000_000) if camera else 0
+        return FIRST_STAMP_NS + period_ns + delay_ns
 
     def at(self, frame: int) -> tuple[np.ndarray, list[Instance]]:
         """`world_from_base` and everything with truth, at a frame's own moment."""

@@ -161,6 +161,9 @@ pub enum FramesProblem {
         /// What is wrong with it.
         cause: ParseTimestampError,
     },
+    /// The moment of the vehicle's pose is not decimal seconds.
+    #[error("ego_stamp: {0}")]
+    EgoStamp(#[source] ParseTimestampError),
     /// A stamp for a camera that the rig does not have.
     #[error("camera `{camera}` is not in rig.toml: it has {known}")]
     UnknownCamera {

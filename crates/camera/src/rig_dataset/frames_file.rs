@@ -17,6 +17,7 @@ use std::{collections::BTreeMap, path::Path};
 struct Line {
     frame: u64,
     stamp: BTreeMap<String, Box<RawValue>>,
+    ego_stamp: Option<Box<RawValue>>,
     ego_position_world_m: Option<[f64; 3]>,
     ego_orientation_world_wxyz: Option<[f64; 4]>,
 }
@@ -61,11 +62,24 @@ fn parse_line(json: &str, cameras: &[RigCamera]) -> Result<DatasetFrame, FramesP
         let stamp = digits.get().parse();
         stamps[index] = Some(stamp.map_err(|cause| FramesProblem::Stamp { camera, cause })?);
     }
+    let ego_at = match line.ego_stamp {
+        Some(digits) => digits.get().parse().map_err(FramesProblem::EgoStamp)?,
+        None => middle(&stamps),
+    };
     Ok(DatasetFrame {
         number: line.frame,
         stamps,
+        ego_at,
         world_from_base: pose(line.ego_position_world_m, line.ego_orientation_world_wxyz)?,
     })
+}
+
+/// Half way between the first and the last of a frame's captures.
+fn middle(stamps: &[Option<Timestamp>]) -> Timestamp {
+    let captured = || stamps.iter().flatten().copied();
+    let first = captured().min().unwrap_or_default();
+    let span = captured().max().unwrap_or_default().saturating_since(first);
+    first.saturating_add(span / 2)
 }
 
 fn find(name: &str, cameras: &[RigCamera]) -> Result<usize, FramesProblem> {

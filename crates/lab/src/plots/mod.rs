@@ -116,8 +116,10 @@ fn shown(table: &SampleTable) -> Vec<Estimator> {
     let estimators = table.estimators();
     let redundant = estimators.iter().any(repeats);
     let estimators = estimators.into_iter();
+    // Single frames are compared with what was published in tables, where a method's own line is not beside theirs.
     estimators
         .filter(|who| *who != Estimator::Published || !redundant)
+        .filter(|who| *who != Estimator::Single)
         .collect()
 }
 

@@ -142,6 +142,7 @@ pub(super) fn legend(chart: &mut Chart<'_>, at: SeriesLabelPosition) -> super::D
 pub(super) fn colour(estimator: Estimator) -> RGBColor {
     match estimator {
         Estimator::Published => RGBColor(0, 0, 0),
+        Estimator::Single => RGBColor(130, 130, 130),
         Estimator::By(Method::TriangleMeasuredF) => RGBColor(230, 159, 0),
         Estimator::By(Method::TriangleFy) => RGBColor(213, 94, 0),
         Estimator::By(Method::Table) => RGBColor(0, 158, 115),

@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 impl Report {
     /// The report as JSON: `detection.…`, `distance.<method>.…`, `location.<method>.…` and so on, where `published`
-    /// stands for what the pipeline published; groups under `by.<grouping>.<group>.<method>`.
+    /// stands for what the pipeline published and `single` for what each frame said before tracks put them together; groups under `by.<grouping>.<group>.<method>`.
     #[must_use]
     pub fn to_json(&self) -> Value {
         json!({
@@ -37,6 +37,8 @@ impl Report {
             "recall_by": self.groups_json(|group| json!({"n": group.objects, "matched": group.found})),
             "heading": self.heading_json(),
             "identity": self.identity,
+            "identity_baselines": self.identity_baselines,
+            "velocity": self.motion,
             "latency_ms": self.latency.map(|latency| json!({"p50": latency.p50, "p99": latency.p99})),
         })
     }
@@ -52,7 +54,7 @@ impl Report {
         object(self.places().map(|(who, _)| {
             let reason = match who {
                 Estimator::By(method) => self.unavailable.get(&method),
-                Estimator::Published => None,
+                Estimator::Published | Estimator::Single => None,
             };
             (who.to_string(), json!(reason))
         }))

@@ -5,7 +5,6 @@ use crate::{
     bootstrap::Interval,
     grouping::Grouping,
     heading_score::HeadingScore,
-    identity::MIN_TIMES_FOUND,
     plots::Plot,
     sample::Estimator,
     sample_table::Group,
@@ -54,40 +53,6 @@ impl Report {
             self.groups(),
         ];
         sections.concat()
-    }
-
-    fn identities(&self) -> String {
-        let identity = &self.identity;
-        if identity.per_camera.object_frames == 0 {
-            return String::new();
-        }
-        let mut text = format!(
-            "## Identities\n\nOf objects that were found at least {MIN_TIMES_FOUND} times; false alarms are counted above. Found under more than one identity \
-             at once: {}.\n\n\
-             | | objects in all moments | IDF1 | HOTA | DetA | AssA | MOTA | switches | fragmentations |\n\
-             |---|---|---|---|---|---|---|---|---|\n",
-            percent(identity.duplicate_share)
-        );
-        for (name, score) in [("rig", &identity.rig), ("per camera", &identity.per_camera)] {
-            let shares = [score.idf1, score.hota, score.deta, score.assa, score.mota];
-            let [idf1, hota, deta, assa, mota] = shares.map(percent);
-            let counts = [score.object_frames, score.switches, score.fragmentations];
-            let [objects, switches, fragmentations] = counts.map(|count| count.to_string());
-            let name = name.to_owned();
-            text.push_str(&row([
-                name,
-                objects,
-                idf1,
-                hota,
-                deta,
-                assa,
-                mota,
-                switches,
-                fragmentations,
-            ]));
-        }
-        text.push('\n');
-        text
     }
 
     fn opening(&self) -> String {

@@ -3,7 +3,7 @@
 #![expect(dead_code, reason = "each test file uses its part")]
 
 use roadwatch_core::{
-    BoxPx, CameraId, Clock, DecodeError, DecodeImage, DetectError, Detection, Detector, Frame,
+    BoxPx, CameraId, Clock, DecodeError, DecodeImage, DetectError, Detection, Detector, Ego, Frame,
     FrameSource, Image, ImageSize, Known, Location, Locator, ObjectClass, Oriented, Output,
     PerFrame, Pixels, Reidentifier, Score, Sink, SinkError, SourceError, Timestamp, Track, TrackId,
 };
@@ -140,17 +140,18 @@ impl Locator for Nowhere {
 pub(crate) struct NoMemory;
 
 impl Reidentifier for NoMemory {
-    fn recall(&self, seen: &PerFrame<Detection>) -> Vec<Known> {
+    fn recall(&self, seen: &PerFrame<Detection>, _: &Ego) -> Vec<Known> {
         vec![Known::default(); seen.items.len()]
     }
 
-    fn commit(&mut self, seen: PerFrame<Oriented>, _: &[Detection]) -> PerFrame<Track> {
+    fn commit(&mut self, seen: PerFrame<Oriented>, _: &[Detection], _: &Ego) -> PerFrame<Track> {
         let tracks = seen.items.into_iter().zip(0..);
         PerFrame {
             items: tracks
                 .map(|(observed, id)| Track {
                     id: TrackId(id),
                     observed,
+                    motion: None,
                 })
                 .collect(),
             frame: seen.frame,
@@ -236,6 +237,7 @@ pub(crate) fn world_with(
                 .collect(),
             rotation: None,
             reidentifier: Box::new(NoMemory),
+            ego: Arc::default(),
         },
         sinks: [channel].into_iter().chain(more_sinks).collect(),
     };

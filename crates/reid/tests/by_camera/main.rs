@@ -3,9 +3,9 @@
 use nalgebra::Matrix3;
 use proptest::prelude::*;
 use roadwatch_core::{
-    BoxPx, CameraId, Detection, Frame, Heading, HeadingCandidates, Image, ImageSize, KeptHeading,
-    Located, Location, Method, ObjectClass, Oriented, PerFrame, Pixels, Prior, Reidentifier, Score,
-    SizeLwh, SlopeEvidence, Timestamp, TrackId,
+    BoxPx, CameraId, Detection, Ego, Frame, Heading, HeadingCandidates, Image, ImageSize,
+    KeptHeading, Located, Location, Method, ObjectClass, Oriented, PerFrame, Pixels, Prior,
+    Reidentifier, Score, SizeLwh, SlopeEvidence, Timestamp, TrackId,
     space::{Covariance, Point},
 };
 use roadwatch_reid::{ByCamera, Rule};
@@ -90,6 +90,7 @@ fn commit(reid: &mut ByCamera, camera: u8, millis: i64, detections: &[Detection]
             items: detections.iter().map(locate).collect(),
         },
         &[],
+        &Ego::default(),
     );
     let same = tracks.items.iter().zip(detections);
     assert!(
@@ -106,7 +107,7 @@ fn left_to_right() -> ByCamera {
 
 /// What is remembered of the objects themselves.
 fn priors(reid: &ByCamera, seen: &PerFrame<Detection>) -> Vec<Option<Prior>> {
-    let known = reid.recall(seen).into_iter();
+    let known = reid.recall(seen, &Ego::default()).into_iter();
     known.map(|known| known.object).collect()
 }
 
@@ -168,6 +169,7 @@ fn a_held_location_keeps_the_stamp_it_was_measured_at() {
                 items: vec![oriented(detection("car", 100.0), held)],
             },
             &[],
+            &Ego::default(),
         );
     }
 }
@@ -193,6 +195,7 @@ fn the_last_heading_stays_until_there_is_a_newer_one() {
             items,
         },
         &[],
+        &Ego::default(),
     );
     let kept = priors(&reid, &seen(0, 100, &cars(&[100.5])));
     let items = vec![Oriented {
@@ -205,6 +208,7 @@ fn the_last_heading_stays_until_there_is_a_newer_one() {
             items,
         },
         &[],
+        &Ego::default(),
     );
     let priors = priors(&reid, &seen(0, 200, &cars(&[101.0])));
     assert_eq!(
@@ -241,7 +245,9 @@ fn a_kept_heading_stays_with_its_object_and_not_with_its_place_in_the_row() {
                 frame: frame(0, millis),
                 items: vec![car],
             };
-            reid.commit(seen, &[]).items[0].observed.heading
+            reid.commit(seen, &[], &Ego::default()).items[0]
+                .observed
+                .heading
         };
         commit(0, car_with_heading(20.0, Duration::ZERO));
         commit(100, car_with_heading(x_m, Duration::from_millis(100))).is_some()
@@ -257,7 +263,7 @@ fn a_heading_is_recalled_only_where_the_object_was() {
         frame: frame(0, 0),
         items: vec![car_with_heading(20.0, Duration::ZERO)],
     };
-    reid.commit(first, &[]);
+    reid.commit(first, &[], &Ego::default());
     let recalled = |left_px: f32| {
         let prior = priors(&reid, &seen(0, 100, &cars(&[left_px])))[0].clone();
         prior.expect("somebody had that place").heading.is_some()
@@ -302,7 +308,7 @@ proptest! {
         for (number, one) in cars(&lefts).into_iter().enumerate() {
             items.push(oriented(one, measured(number as f64)));
         }
-        reid.commit(PerFrame { frame: frame(0, 0), items }, &[]);
+        reid.commit(PerFrame { frame: frame(0, 0), items }, &[], &Ego::default());
         let priors = priors(&reid, &seen(0, 0, &cars(&lefts)));
         for (number, prior) in priors.iter().enumerate() {
             prop_assert_eq!(remembered_x_m(prior), Some(number as f64));
@@ -321,7 +327,7 @@ fn what_got_no_location_keeps_its_place_in_the_row() {
             .map(|car| oriented(car.clone(), measured(f64::from(car.box_px.x_min))))
             .collect(),
     };
-    let tracks = reid.commit(located, &row[..1]);
+    let tracks = reid.commit(located, &row[..1], &Ego::default());
     assert_eq!(
         tracks
             .items
@@ -366,5 +372,5 @@ fn by_overlap_what_is_remembered_follows_the_object() {
     assert_eq!(remembered_x_m(&priors[1]), Some(100.0));
     // Time that goes back is another recording.
     let before = seen(0, -5000, &cars(&[101.0]));
-    assert_eq!(reid.recall(&before)[0].object, None);
+    assert_eq!(reid.recall(&before, &Ego::default())[0].object, None);
 }

@@ -3,16 +3,17 @@
 use super::{output::say, progress::Progress, scoring::labelled};
 use crate::{
     cli::EvaluateArgs,
-    config::{Changes, Config, DatasetChoice, Mistakes},
+    config::{Changes, Config, DatasetChoice, Identities, Mistakes, ReidConfig},
     failure::Failure,
+    open,
     session::{Session, watch},
 };
 use anyhow::{Context as _, anyhow};
 use roadwatch_camera::{Pace, PlaybackOptions, Repeat};
 use roadwatch_core::Method;
 use roadwatch_lab::{
-    Evaluation, LatencyMs, LostImages, MethodUnderTest, Recorded, Recorder, Report, Truth,
-    TruthFilter, evaluate::evaluate,
+    Baseline, Evaluation, LatencyMs, LostImages, MethodUnderTest, Recorded, Recorder, Report,
+    Truth, TruthFilter, evaluate::evaluate,
 };
 use roadwatch_pipeline::{NamedSink, Overload, PipelineOptions, Running};
 use std::{sync::Arc, time::Duration};
@@ -60,7 +61,12 @@ pub fn run(args: &EvaluateArgs) -> Result<(), Failure> {
     let (recorded, latency) = perceive(session, Progress::new(images, "images"))?;
     let report = Report {
         latency: Some(latency),
-        ..evaluate(&evaluation, &recorded, &methods(&config))
+        ..evaluate(
+            &evaluation,
+            &recorded,
+            &methods(&config),
+            baselines(&config),
+        )
     };
     let files = report
         .write(&args.report)
@@ -101,6 +107,27 @@ pub(super) fn perceive(
         p99: millis(latency.p99),
     };
     Ok((recorder.take(), latency))
+}
+
+/// The other ways to give identities.
+fn baselines(config: &Config) -> Vec<Baseline> {
+    let others = Identities::ALL.into_iter();
+    let others = others.filter(|(_, identities)| {
+        *identities != Identities::Tracks && *identities != config.reid.identities
+    });
+    let memory = config.locate.ground_memory;
+    let baseline = |(name, identities): (&str, Identities)| {
+        let reid = ReidConfig {
+            identities,
+            ..config.reid.clone()
+        };
+        let rig = open::shared_rig(config)?;
+        Some(Baseline {
+            name: name.to_owned(),
+            reidentifier: reid.reidentifier(&rig, memory),
+        })
+    };
+    others.filter_map(baseline).collect()
 }
 
 /// A class that nobody labelled is a slip: its report would be empty.

@@ -38,7 +38,7 @@ pub fn run(args: &ConfigArgs) -> Result<(), Failure> {
         );
     }
     say!("  -> [FIFO, {DETECTED_QUEUE_LEN} frames]");
-    let rule = config.reid.as_str();
+    let rule = config.reid.identities.as_str();
     say!("perceive recall, locate, identify ({rule}), one step for the whole rig");
     say!("  -> [FIFO per sink, full: realtime drops and counts, lossless waits]");
     let messages = Messages::new(Arc::clone(&session.rig), surface).map_err(anyhow::Error::from)?;

@@ -59,6 +59,10 @@ pub fn run(args: &RunArgs, rosout: &RosoutTap) -> Result<(), Failure> {
         ..PipelineOptions::new(overload(args.pace))
     };
     let (rig, decodes) = (Arc::clone(&session.rig), session.decodes.clone());
+    let ego_listener = node.as_ref().map(|node| session.ego_listener(node.node()));
+    let _ego_listener = ego_listener
+        .transpose()
+        .context("the vehicle's motion cannot be listened to")?;
     let session = match &node {
         Some(node) => {
             let listening = session.listening(node.node());
@@ -103,7 +107,7 @@ fn start_node(
 ) -> Result<Option<DaemonNode>, Failure> {
     let listens = session.has_topics();
     if listens && args.pace == Pace::Lossless {
-        let what = anyhow!("topics do not wait: cameras that they feed run at --pace realtime");
+        let what = anyhow!("topics do not wait: what they feed runs at --pace realtime");
         return Err(what.into());
     }
     if !listens && !session.config.node.publish {

@@ -77,6 +77,6 @@ impl Scoring {
             lost_images: LostImages::Ignore,
             frame_limit,
         };
-        evaluate(&evaluation, &self.recorder.take(), &[])
+        evaluate(&evaluation, &self.recorder.take(), &[], Vec::new())
     }
 }

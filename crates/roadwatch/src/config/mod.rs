@@ -9,12 +9,14 @@ mod changes;
 pub mod detector;
 mod diagnostics;
 mod document;
+mod ego;
 mod environment;
 pub mod locate;
 mod mistake;
 pub mod node;
 mod notes;
 mod reader;
+mod reid;
 pub mod rotation;
 mod values;
 
@@ -23,17 +25,18 @@ pub use cameras::{CameraConfig, DatasetChoice, RigConfig};
 pub use changes::Changes;
 pub use detector::DetectorConfig;
 pub use diagnostics::DiagnosticLimits;
+pub use ego::{EgoConfig, EgoTopic};
 pub use environment::Environment;
 pub use locate::LocateConfig;
 pub use mistake::{Mistake, Mistakes};
 pub use node::NodeConfig;
 pub use notes::Notes;
+pub use reid::{Identities, ReidConfig};
 pub use rotation::RotationConfig;
 
 use document::Document;
 use reader::Reader;
 use roadwatch_pipeline::PipelineOptions;
-use roadwatch_reid::Rule;
 use std::{fs, path::Path, time::Duration};
 
 /// Longer than this no round is worth waiting for, seconds.
@@ -58,8 +61,10 @@ pub struct Config {
     pub rotation: Option<RotationConfig>,
     /// `[scene] timeout_secs`.
     pub scene_timeout: Duration,
-    /// `[reid] method`.
-    pub reid: Rule,
+    /// `[reid]`.
+    pub reid: ReidConfig,
+    /// `[ego]`.
+    pub ego: EgoConfig,
     /// `[enabled]`: whether each camera, in order of their ids, is looked at from the start.
     pub enabled: Vec<bool>,
     /// `[diagnostics]`.
@@ -116,6 +121,7 @@ fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<DatasetChoice>) -> C
         "rotation",
         "scene",
         "reid",
+        "ego",
         "enabled",
         "diagnostics",
     ];
@@ -128,6 +134,7 @@ fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<DatasetChoice>) -> C
         rotation,
         scene,
         reid,
+        ego,
         enabled,
         diagnostics,
     ] = &sections;
@@ -145,7 +152,8 @@ fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<DatasetChoice>) -> C
         notes,
         node: node::read(node),
         detector: detector::read(detector),
-        reid: reid.choice("method", &Rule::ALL).unwrap_or_default(),
+        reid: reid::read(reid),
+        ego: ego::read(ego),
         diagnostics: diagnostics::read(diagnostics),
         enabled: read_enabled(enabled, rig_config.as_ref()),
         rig: rig_config,

@@ -29,6 +29,7 @@ pub(super) fn read(node: &Reader<'_, '_>) -> NodeConfig {
         node_name: text("name", defaults.node_name),
         namespace: text("namespace", defaults.namespace),
         base_frame: text("base_frame", defaults.base_frame),
+        scene_in_odom: node.text("scene_in_odom").map(str::to_owned),
         queue_depth: node
             .integer("queue_depth", 1..=1000)
             .map_or(DEFAULT_QUEUE_DEPTH, |depth| depth as usize),
@@ -81,10 +82,15 @@ fn note_refused_names(node: &Reader<'_, '_>, surface: &Surface) {
         base_frame: surface.base_frame.clone(),
         ..defaults()
     });
+    let of_odom = alone(Surface {
+        scene_in_odom: surface.scene_in_odom.clone(),
+        ..defaults()
+    });
     for (key, error) in [
         ("name", of_name),
         ("namespace", of_namespace),
         ("base_frame", of_frame),
+        ("scene_in_odom", of_odom),
     ] {
         if let Some(error) = error {
             node.note(key, error.to_string());

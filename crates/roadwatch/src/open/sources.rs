@@ -3,10 +3,10 @@
 use super::ros_images::{BagRecording, to_image};
 use crate::config::{CameraConfig, Config, Notes, RigConfig, SourceConfig};
 use roadwatch_camera::{
-    DecodeCount, ImageSequence, Playback, PlaybackOptions, Player, Recording, RigDataset, Span,
-    VideoFile,
+    DecodeCount, ImageSequence, Playback, PlaybackOptions, Player, Recording, Repeat, RigDataset,
+    Span, VideoFile,
 };
-use roadwatch_core::{CameraId, FrameSource, RigCamera, Timestamp, error_chain};
+use roadwatch_core::{CameraId, EgoMotion, FrameSource, RigCamera, Timestamp, error_chain};
 use roadwatch_ros::{BagImages, ImageTopic, RosError, RosNode, TopicCamera};
 use std::sync::Arc;
 
@@ -54,11 +54,12 @@ enum Opened {
     Topic(Box<TopicCamera>),
 }
 
-/// Opens what feeds each camera, or notes why not. `decodes` counts the images that are decoded.
+/// Opens what feeds each camera, or notes why not. `decodes` counts the images that are decoded; what was recorded of the
+/// vehicle's motion, `ego`, is looped as the images are.
 pub fn sources(
     config: &Config,
     playback: PlaybackOptions,
-    decodes: &DecodeCount,
+    (decodes, ego): (&DecodeCount, &EgoMotion),
     notes: &mut Notes,
 ) -> Option<Vec<Feed>> {
     let RigConfig {
@@ -87,6 +88,9 @@ pub fn sources(
     note_lonely(cameras, &spans, notes);
     let spans: Vec<Span> = spans.into_iter().flatten().collect();
     let playback = Playback::new(playback, &spans);
+    if playback.options().repeat == Repeat::Loop && !config.ego.is_live() {
+        ego.repeat_every(playback.lap());
+    }
     let feeds = rig.ids().zip(opened).map(|(camera, opened)| match opened {
         Opened::Recording(recording) => {
             let player = Player::new(camera, recording, Arc::clone(&playback));

@@ -29,10 +29,9 @@ pub(crate) fn detections_2d(
         id,
     };
     let tracked = seen.objects.iter().map(|one| {
-        let observed = &one.track.observed;
-        let pose = UncertainPose::in_optical(observed, camera.base_from_optical);
+        let pose = UncertainPose::in_optical(&one.placed, camera.base_from_optical);
         detection(
-            &observed.located.detection,
+            &one.track.observed.located.detection,
             (&pose).into(),
             one.track.id.0.to_string(),
         )
@@ -54,13 +53,15 @@ pub(crate) fn detections_3d(seen: &SeenTogether) -> Detection3DArray {
         .iter()
         .map(|one| {
             let located = &one.track.observed.located;
-            let pose = UncertainPose::in_base(&one.track.observed);
+            let pose = UncertainPose::of(&one.placed);
+            let mut results = hypothesis(&located.detection, (&pose).into());
+            results.hypothesis.class_id = one.track.class().as_str().to_owned();
             Detection3D {
                 header: seen.header_of(one),
-                results: vec![hypothesis(&located.detection, (&pose).into())],
+                results: vec![results],
                 bbox: BoundingBox3D {
                     center: (&pose.isometry).into(),
-                    size: extents(located.location.size),
+                    size: extents(one.track.size()),
                 },
                 id: one.track.id.0.to_string(),
             }

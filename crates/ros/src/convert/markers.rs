@@ -1,4 +1,4 @@
-//! `visualization_msgs/MarkerArray`: box, heading and label of each object.
+//! `visualization_msgs/MarkerArray`: box, heading, label and trail of each object.
 
 use super::{
     pose::{UncertainPose, extents},
@@ -10,7 +10,7 @@ use crate::msg::{
     std_msgs::{ColorRGBA, Header},
     visualization_msgs::{Marker, MarkerArray},
 };
-use roadwatch_core::Timestamp;
+use roadwatch_core::{Phase, Timestamp};
 
 /// How long a shape outlives the last message: longer than the slowest camera's interval, short enough
 /// that a viewer does not go on showing objects of a node that is gone.
@@ -22,10 +22,14 @@ const LABEL_HEIGHT_M: f64 = 0.6;
 const LABEL_GAP_M: f64 = 0.5;
 /// Thickness of an arrow's shaft, metres.
 const ARROW_THICKNESS_M: f64 = 0.2;
+/// Width of a trail, metres.
+const TRAIL_WIDTH_M: f64 = 0.15;
+/// Opacity of a trail.
+const TRAIL_OPACITY: f32 = 0.8;
 /// Opacity of a box measured in this frame.
 const FRESH_OPACITY: f32 = 0.6;
-/// Opacity of a box kept from an earlier frame.
-const HELD_OPACITY: f32 = 0.25;
+/// Opacity of a box that is predicted, or kept from an earlier frame.
+const PREDICTED_OPACITY: f32 = 0.25;
 
 /// First a marker that clears the topic, then the shapes of each object.
 ///
@@ -56,37 +60,38 @@ fn clear(header: Header) -> Marker {
 
 fn shapes(together: &SeenTogether, seen: &Seen) -> Vec<Marker> {
     let mut shapes = vec![cube(together, seen)];
-    if seen.track.observed.heading.is_some() {
+    if seen.placed.heading.is_some() {
         shapes.push(arrow(together, seen));
+    }
+    if seen.trail.len() > 1 {
+        shapes.push(trail(together, seen));
     }
     shapes.push(label(together, seen));
     shapes
 }
 
 fn cube(together: &SeenTogether, seen: &Seen) -> Marker {
-    let location = &seen.track.observed.located.location;
-    let opacity = if location.held {
-        HELD_OPACITY
+    let opacity = if seen.is_predicted() {
+        PREDICTED_OPACITY
     } else {
         FRESH_OPACITY
     };
     Marker {
         kind: Marker::CUBE,
         pose: pose_of(seen),
-        scale: extents(location.size),
+        scale: extents(seen.track.size()),
         color: color_of(seen, opacity),
         ..shape(together, seen, "box")
     }
 }
 
 fn arrow(together: &SeenTogether, seen: &Seen) -> Marker {
-    let location = &seen.track.observed.located.location;
     Marker {
         kind: Marker::ARROW,
         pose: pose_of(seen),
         // From the middle of the box to as far again beyond its nose.
         scale: Vector3 {
-            x: location.size.length_m,
+            x: seen.track.size().length_m,
             y: ARROW_THICKNESS_M,
             z: ARROW_THICKNESS_M,
         },
@@ -95,13 +100,35 @@ fn arrow(together: &SeenTogether, seen: &Seen) -> Marker {
     }
 }
 
+/// A line through the places where it was.
+fn trail(together: &SeenTogether, seen: &Seen) -> Marker {
+    Marker {
+        kind: Marker::LINE_STRIP,
+        scale: Vector3 {
+            x: TRAIL_WIDTH_M,
+            ..Vector3::default()
+        },
+        color: color_of(seen, TRAIL_OPACITY),
+        points: seen.trail.iter().map(|&point| point.into()).collect(),
+        ..shape(together, seen, "trail")
+    }
+}
+
 fn label(together: &SeenTogether, seen: &Seen) -> Marker {
-    let located = &seen.track.observed.located;
     let mut pose = Pose {
-        position: located.location.position.coords.into(),
+        position: seen.placed.position.into(),
         ..Pose::default()
     };
-    pose.position.z += located.location.size.height_m / 2.0 + LABEL_GAP_M;
+    pose.position.z += seen.track.size().height_m / 2.0 + LABEL_GAP_M;
+    let (_, range_m) = seen.depth_range_m;
+    let moving = seen
+        .track
+        .motion
+        .as_ref()
+        .filter(|m| m.phase != Phase::Tentative);
+    let speed = moving.map_or_else(String::new, |motion| {
+        format!(" {:.1} m/s", motion.speed_m_s())
+    });
     Marker {
         kind: Marker::TEXT_VIEW_FACING,
         pose,
@@ -111,18 +138,24 @@ fn label(together: &SeenTogether, seen: &Seen) -> Marker {
         },
         color: WHITE,
         text: format!(
-            "{} {} {:.1} m",
-            located.detection.class, seen.track.id.0, located.location.range_m
+            "{} {} {range_m:.1} m{speed}",
+            seen.track.class(),
+            seen.track.id.0
         ),
         ..shape(together, seen, "label")
     }
 }
 
 fn shape(together: &SeenTogether, seen: &Seen, name: &str) -> Marker {
-    let camera = seen.seen_by.first().copied().unwrap_or_default();
+    // The identity of a tracked object is its own, whoever sees it; others are numbered camera by camera.
+    let camera = match seen.track.motion {
+        Some(_) => together.camera,
+        None => seen.seen_by.first().copied().unwrap_or_default(),
+    };
+    let owner = if camera.is_empty() { "scene" } else { camera };
     Marker {
         header: together.header_of(seen),
-        ns: format!("{camera}/{name}"),
+        ns: format!("{owner}/{name}"),
         id: marker_id(seen.track.id.0),
         action: Marker::ADD,
         lifetime: MARKER_LIFETIME,
@@ -136,7 +169,7 @@ fn marker_id(track_id: u64) -> i32 {
 }
 
 fn pose_of(seen: &Seen) -> Pose {
-    (&UncertainPose::in_base(&seen.track.observed).isometry).into()
+    (&UncertainPose::of(&seen.placed).isometry).into()
 }
 
 const WHITE: ColorRGBA = rgba(1.0, 1.0, 1.0, 1.0);
@@ -145,13 +178,19 @@ const fn rgba(r: f32, g: f32, b: f32, a: f32) -> ColorRGBA {
     ColorRGBA { r, g, b, a }
 }
 
-/// A colour per class, from a palette that the colour-blind can tell apart (Okabe and Ito, 2008).
+/// The palette of Okabe and Ito (2008), whose colours the colour-blind can tell apart, without black.
+const PALETTE: [(f32, f32, f32); 7] = [
+    (0.0, 0.45, 0.7),
+    (0.9, 0.6, 0.0),
+    (0.0, 0.62, 0.45),
+    (0.8, 0.47, 0.65),
+    (0.34, 0.71, 0.91),
+    (0.84, 0.37, 0.0),
+    (0.94, 0.89, 0.26),
+];
+
+/// A colour per identity.
 fn color_of(seen: &Seen, opacity: f32) -> ColorRGBA {
-    match seen.track.observed.located.detection.class.as_str() {
-        "car" => rgba(0.0, 0.45, 0.7, opacity),
-        "truck" | "bus" | "train" => rgba(0.8, 0.47, 0.65, opacity),
-        "person" => rgba(0.9, 0.6, 0.0, opacity),
-        "bicycle" | "motorcycle" => rgba(0.0, 0.62, 0.45, opacity),
-        _ => rgba(0.6, 0.6, 0.6, opacity),
-    }
+    let (r, g, b) = PALETTE[(seen.track.id.0 % PALETTE.len() as u64) as usize];
+    rgba(r, g, b, opacity)
 }

@@ -1,9 +1,10 @@
 //! Pose and 6x6 covariance of an object.
 
+use super::seen::Placed;
 use crate::msg::geometry_msgs::{PoseWithCovariance, Vector3};
 use nalgebra::{Isometry3, Matrix6, Translation3, UnitQuaternion, Vector3 as Axis};
 use roadwatch_core::{
-    KeptHeading, Oriented, SizeLwh,
+    Heading, SizeLwh,
     space::{BaseLink, Optical, Transform},
 };
 use std::f64::consts::PI;
@@ -24,8 +25,8 @@ pub(crate) struct UncertainPose {
 }
 
 /// Variance of the yaw, square radians, with the chance of a flip; that of a uniform angle without a heading.
-pub(crate) fn yaw_variance(heading: Option<KeptHeading>) -> f64 {
-    let known = heading.map(|kept| kept.heading.variance_rad2());
+pub(crate) fn yaw_variance(heading: Option<Heading>) -> f64 {
+    let known = heading.map(|heading| heading.variance_rad2());
     known.map_or(YAW_UNKNOWN_VARIANCE_RAD2, |variance| {
         variance.min(YAW_UNKNOWN_VARIANCE_RAD2)
     })
@@ -41,38 +42,37 @@ pub(crate) fn extents(size: SizeLwh) -> Vector3 {
 }
 
 impl UncertainPose {
-    /// The pose in the base frame; not turned when the heading is unknown.
-    pub(crate) fn in_base(object: &Oriented) -> Self {
-        let location = &object.located.location;
-        let yaw_rad = object.heading.map_or(0.0, |kept| kept.heading.yaw_rad);
+    /// The pose; not turned when the heading is unknown.
+    pub(crate) fn of(placed: &Placed) -> Self {
+        let yaw_rad = placed.heading.map_or(0.0, |heading| heading.yaw_rad);
         let diagonal = [
             UPRIGHT_VARIANCE_RAD2,
             UPRIGHT_VARIANCE_RAD2,
-            yaw_variance(object.heading),
+            yaw_variance(placed.heading),
         ];
         let mut covariance = Matrix6::zeros();
         covariance
             .fixed_view_mut::<3, 3>(0, 0)
-            .copy_from(&location.covariance.matrix);
+            .copy_from(&placed.covariance);
         covariance
             .fixed_view_mut::<3, 3>(3, 3)
             .set_diagonal(&diagonal.into());
         Self {
             isometry: Isometry3::from_parts(
-                Translation3::from(location.position.coords),
+                Translation3::from(placed.position),
                 UnitQuaternion::from_axis_angle(&Axis::z_axis(), yaw_rad),
             ),
             covariance,
         }
     }
 
-    /// The same pose in a camera's optical frame.
+    /// The same pose, of one placed in base_link, in a camera's optical frame.
     pub(crate) fn in_optical(
-        object: &Oriented,
+        placed: &Placed,
         base_from_optical: Transform<BaseLink, Optical>,
     ) -> Self {
         let optical_from_base = base_from_optical.inverse().isometry;
-        let in_base = Self::in_base(object);
+        let in_base = Self::of(placed);
         let turn = optical_from_base.rotation.to_rotation_matrix();
         let mut turn_both = Matrix6::zeros();
         turn_both

@@ -208,10 +208,22 @@ fn autoware_is_told_what_is_known_and_no_more() {
     };
     let messages = Messages::new(Arc::new(testing::two_cameras()), &surface).expect("legal names");
     let outputs = testing::outputs(0);
-    let sent = outputs.iter().flat_map(|output| messages.of(output)).last();
-    let sent = sent.expect("the scene's last topic");
-    let topic = &messages.topics()[sent.topic].name;
-    assert_eq!(topic, "/roadwatch/scene/detected_objects");
+    let mut sent: Vec<_> = outputs
+        .iter()
+        .flat_map(|output| messages.of(output))
+        .collect();
+    let tracked = sent.pop().expect("the scene's last topic");
+    let sent = sent.pop().expect("the one before");
+    let names = [&sent, &tracked].map(|one| messages.topics()[one.topic].name.as_str());
+    assert_eq!(
+        names,
+        [
+            "/roadwatch/scene/detected_objects",
+            "/roadwatch/scene/tracked_objects"
+        ]
+    );
+    // Nothing is tracked here, and nothing is said of tracks.
+    assert!(matches!(&tracked.message, Message::TrackedObjects(array) if array.objects.is_empty()));
     let Message::DetectedObjects(array) = sent.message else {
         panic!("Autoware's objects");
     };
@@ -229,4 +241,116 @@ fn autoware_is_told_what_is_known_and_no_more() {
         Kinematics::AVAILABLE
     );
     assert_eq!(person.shape.kind, Shape::CYLINDER);
+}
+
+/// The scene's car as a track that drives along its heading, and the vehicle at a known place.
+fn tracked_scene() -> Output {
+    use nalgebra::{Isometry3, Matrix2, Vector2, Vector3};
+    use roadwatch_core::{
+        Ego, EgoKnowledge, Heading, Motion, Phase,
+        space::{Covariance, Transform},
+    };
+    let outputs = testing::outputs(0);
+    let Some(Output::Scene(scene)) = outputs.last() else {
+        panic!("a scene");
+    };
+    let mut scene = Scene::clone(scene);
+    let car = &mut scene.objects[0];
+    let location = car.track.observed.located.location.clone();
+    car.track.motion = Some(Motion {
+        phase: Phase::Coasting,
+        first_seen: Timestamp::from_nanos(testing::START_NS - 2_000_000_000),
+        class: car.track.observed.located.detection.class.clone(),
+        position: location.position,
+        covariance: Covariance::new(location.covariance.matrix),
+        size: location.size,
+        heading: Some(Heading {
+            yaw_rad: 1.0,
+            std_dev_rad: 0.1,
+            flip_probability: 0.0,
+        }),
+        velocity_m_s: Vector2::new(1.0_f64.cos(), 1.0_f64.sin()) * 5.0,
+        velocity_covariance: Matrix2::identity(),
+        acceleration_m_s2: Vector2::zeros(),
+        acceleration_covariance: Matrix2::identity(),
+        turn_rate_rad_s: 0.25,
+        turn_rate_variance: 0.01,
+    });
+    let turned = Isometry3::new(Vector3::new(100.0, 0.0, 0.0), Vector3::z() * 0.5);
+    scene.ego = Ego {
+        odom_from_base: Transform::new(turned),
+        knowledge: EgoKnowledge::Measured,
+    };
+    Output::Scene(Arc::new(scene))
+}
+
+fn of_tracked_scene(surface: &Surface, name: &str) -> Message {
+    let messages = Messages::new(Arc::new(testing::two_cameras()), surface).expect("legal names");
+    let sent = messages.of(&tracked_scene()).into_iter();
+    let mut sent = sent.filter(|one| messages.topics()[one.topic].name.ends_with(name));
+    sent.next().expect("published").message
+}
+
+#[test]
+fn a_track_says_who_it_is_how_it_moves_and_that_it_is_predicted() {
+    let Message::Objects(array) = of_tracked_scene(&Surface::default(), "scene/objects") else {
+        panic!("objects");
+    };
+    assert_eq!(array.ego_motion, "measured");
+    let (car, person) = (&array.objects[0], &array.objects[1]);
+    assert_eq!((car.state.as_str(), car.predicted), ("coasting", true));
+    assert!((car.age - 2.0).abs() < 0.1 && car.motion_known);
+    assert!((car.velocity.y - 5.0 * 1.0_f64.sin()).abs() < 1e-9);
+    // Version and variant of RFC 9562.
+    assert_eq!((car.uuid.uuid[6] >> 4, car.uuid.uuid[8] >> 6), (8, 2));
+    assert_eq!(
+        (person.state.as_str(), person.motion_known),
+        ("untracked", false)
+    );
+    assert_eq!(person.uuid.uuid, [0; 16]);
+}
+
+#[test]
+fn a_scene_in_odom_is_turned_and_moved_with_the_vehicle() {
+    let surface = Surface {
+        scene_in_odom: Some("odom".to_owned()),
+        ..Surface::default()
+    };
+    let Message::Objects(array) = of_tracked_scene(&surface, "scene/objects") else {
+        panic!("objects");
+    };
+    let car = &array.objects[0];
+    assert_eq!(
+        (array.header.frame_id.as_str(), car.header.frame_id.as_str()),
+        ("odom", "odom")
+    );
+    // base_link (20, 3) turned by half a radian, 100 m ahead.
+    let (sin, cos) = 0.5_f64.sin_cos();
+    assert!((car.position.x - (100.0 + 20.0 * cos - 3.0 * sin)).abs() < 1e-9);
+    assert!((car.yaw_rad - 1.5).abs() < 1e-9);
+    assert!((car.velocity.x - 5.0 * 1.5_f64.cos()).abs() < 1e-9);
+}
+
+#[test]
+fn autowares_tracks_move_along_their_own_axes() {
+    let surface = Surface {
+        autoware: true,
+        ..Surface::default()
+    };
+    let Message::TrackedObjects(array) = of_tracked_scene(&surface, "tracked_objects") else {
+        panic!("tracks");
+    };
+    // The person is not tracked here.
+    let [car] = &array.objects[..] else {
+        panic!("{} tracks", array.objects.len());
+    };
+    let twist = &car.kinematics.twist_with_covariance.twist;
+    assert!((twist.linear.x - 5.0).abs() < 1e-9 && twist.linear.y.abs() < 1e-9);
+    assert_eq!(twist.angular.z, 0.25);
+    assert!(!car.kinematics.is_stationary);
+    // What coasts was not detected.
+    let Message::DetectedObjects(detected) = of_tracked_scene(&surface, "detected_objects") else {
+        panic!("detections");
+    };
+    assert_eq!(detected.objects.len(), 1);
 }

@@ -56,6 +56,28 @@ pub enum BagImagesError {
         /// What there is.
         topics: BTreeSet<String>,
     },
+    /// No such topic of any kind.
+    #[error("`{}` has no `{topic}`; it has {}", path.display(), listed(topics))]
+    NoSuch {
+        /// The bag.
+        path: PathBuf,
+        /// What was asked for.
+        topic: String,
+        /// What there is.
+        topics: BTreeSet<String>,
+    },
+    /// The topic carries something else than was asked for.
+    #[error("`{topic}` of `{}` is {found}, not {expected}", path.display())]
+    NotThat {
+        /// The bag.
+        path: PathBuf,
+        /// The topic.
+        topic: String,
+        /// What it carries.
+        found: String,
+        /// What was asked for.
+        expected: String,
+    },
     /// The topic carries something else.
     #[error("`{topic}` of `{}` is {found}, not {RAW} or {COMPRESSED}", path.display())]
     OtherType {
@@ -86,9 +108,9 @@ pub struct BagSpan {
     pub count: u64,
 }
 
-struct OneFile {
-    path: PathBuf,
-    summary: Summary,
+pub(super) struct OneFile {
+    pub(super) path: PathBuf,
+    pub(super) summary: Summary,
 }
 
 /// The images of one topic, one after the other, with the stamps in their headers.
@@ -257,7 +279,7 @@ impl BagImages {
 }
 
 /// The bag's files, in order of their names' numbers, as `ros2 bag` numbers them.
-fn files(path: &Path) -> Result<Vec<OneFile>, BagImagesError> {
+pub(super) fn files(path: &Path) -> Result<Vec<OneFile>, BagImagesError> {
     let mut paths = vec![path.to_owned()];
     if path.is_dir() {
         let unreadable = |source| BagImagesError::Unreadable {
@@ -295,7 +317,7 @@ fn number(path: &Path) -> u64 {
         .unwrap_or(0)
 }
 
-fn type_of<'a>(summary: &'a Summary, topic: &str) -> Option<&'a str> {
+pub(super) fn type_of<'a>(summary: &'a Summary, topic: &str) -> Option<&'a str> {
     let mut channels = summary.channels.values();
     let channel = channels.find(|channel| channel.topic == topic)?;
     channel.schema.as_ref().map(|schema| schema.name.as_str())

@@ -191,7 +191,7 @@ impl ImageTopic {
 }
 
 /// A subscription that wakes `poll`.
-fn watched<M: DeserializeOwned + 'static>(
+pub(super) fn watched<M: DeserializeOwned + 'static>(
     node: &RosNode,
     (topic, ros_type): (&str, &str),
     qos: &QosProfile,

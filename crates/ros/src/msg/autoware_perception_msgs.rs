@@ -1,8 +1,11 @@
 //! `autoware_perception_msgs`: objects as Autoware's perception passes them on.
 
 use super::{
-    geometry_msgs::{Polygon, PoseWithCovariance, TwistWithCovariance, Vector3},
+    geometry_msgs::{
+        AccelWithCovariance, Polygon, PoseWithCovariance, TwistWithCovariance, Vector3,
+    },
     std_msgs::Header,
+    unique_identifier_msgs::UUID,
 };
 use serde::{Deserialize, Serialize};
 
@@ -97,4 +100,43 @@ pub struct DetectedObjects {
     pub header: Header,
     /// The objects.
     pub objects: Vec<DetectedObject>,
+}
+
+/// Where a tracked object is and how it moves.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TrackedObjectKinematics {
+    /// The centre of its box.
+    pub pose_with_covariance: PoseWithCovariance,
+    /// One of the constants of [`DetectedObjectKinematics`].
+    pub orientation_availability: u8,
+    /// How it moves, along its own axes.
+    pub twist_with_covariance: TwistWithCovariance,
+    /// How that changes, along its own axes.
+    pub acceleration_with_covariance: AccelWithCovariance,
+    /// Whether it stands.
+    pub is_stationary: bool,
+}
+
+/// One object with its identity.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TrackedObject {
+    /// Who it is.
+    pub object_id: UUID,
+    /// How likely it is there at all, 0 to 1.
+    pub existence_probability: f32,
+    /// What it may be.
+    pub classification: Vec<ObjectClassification>,
+    /// Where it is.
+    pub kinematics: TrackedObjectKinematics,
+    /// Its extent.
+    pub shape: Shape,
+}
+
+/// What was there at one moment, by all that was seen before.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TrackedObjects {
+    /// When, and the frame of all poses.
+    pub header: Header,
+    /// The objects.
+    pub objects: Vec<TrackedObject>,
 }

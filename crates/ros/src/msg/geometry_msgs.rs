@@ -87,6 +87,28 @@ impl From<&Isometry3<f64>> for Pose {
     }
 }
 
+impl From<&Pose> for Isometry3<f64> {
+    /// What is no rotation stays none, so that it is refused where it is used.
+    fn from(pose: &Pose) -> Self {
+        let Point { x, y, z } = pose.position;
+        isometry(Vector3 { x, y, z }, pose.orientation)
+    }
+}
+
+impl From<&Transform> for Isometry3<f64> {
+    fn from(transform: &Transform) -> Self {
+        isometry(transform.translation, transform.rotation)
+    }
+}
+
+fn isometry(place: Vector3, rotation: Quaternion) -> Isometry3<f64> {
+    let Quaternion { x, y, z, w } = rotation;
+    Isometry3::from_parts(
+        nalgebra::Translation3::new(place.x, place.y, place.z),
+        UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(w, x, y, z)),
+    )
+}
+
 /// A pose and how sure it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PoseWithCovariance {
@@ -164,4 +186,22 @@ pub struct Point32 {
 pub struct Polygon {
     /// Its corners.
     pub points: Vec<Point32>,
+}
+
+/// An acceleration.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Accel {
+    /// Metres per second squared.
+    pub linear: Vector3,
+    /// Radians per second squared.
+    pub angular: Vector3,
+}
+
+/// An acceleration with its covariance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct AccelWithCovariance {
+    /// The acceleration.
+    pub accel: Accel,
+    /// Row by row, as of a pose.
+    pub covariance: [[f64; 6]; 6],
 }

@@ -1,9 +1,10 @@
 //! The Rust types are what the `.msg` files say: names, order, types, counts.
 
 use super::{
-    autoware_perception_msgs::DetectedObjects,
+    autoware_perception_msgs::{DetectedObjects, TrackedObjects},
     diagnostic_msgs::DiagnosticArray,
     lifecycle_msgs::TransitionEvent,
+    nav_msgs::Odometry,
     roadwatch_msgs::ObjectArray,
     rosgraph_msgs::Clock,
     sensor_msgs::CameraInfo,
@@ -40,6 +41,10 @@ fn traced() -> Registry {
     tracer
         .trace_simple_type::<DetectedObjects>()
         .expect("Autoware's objects");
+    tracer
+        .trace_simple_type::<TrackedObjects>()
+        .expect("Autoware's tracks");
+    tracer.trace_simple_type::<Odometry>().expect("odometry");
     tracer.trace_simple_type::<Clock>().expect("clock");
     tracer
         .trace_simple_type::<DiagnosticArray>()

@@ -1,8 +1,10 @@
 //! `roadwatch_msgs`: everything that is known. `msgs/roadwatch_msgs/msg` is the source.
 
 use super::{
+    builtin_interfaces::Time,
     geometry_msgs::{Point, Vector3},
     std_msgs::Header,
+    unique_identifier_msgs::UUID,
 };
 use serde::{Deserialize, Serialize};
 
@@ -22,10 +24,20 @@ pub struct KeyComponent {
 /// One object and everything that is known about it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Object {
-    /// Capture time of the frame it was last seen in, base frame.
+    /// The moment that the position is of, and its frame.
     pub header: Header,
+    /// Capture time of the newest frame that it was seen in.
+    pub seen_at: Time,
     /// Who it is.
     pub track_id: u64,
+    /// The same as a name that no other run gives; all zero without tracking.
+    pub uuid: UUID,
+    /// How far it is believed in.
+    pub state: String,
+    /// Whether the position is a prediction.
+    pub predicted: bool,
+    /// Seconds since it was first seen.
+    pub age: f32,
     /// What it is.
     pub class_id: String,
     /// How sure the detector is, 0 to 1.
@@ -56,6 +68,20 @@ pub struct Object {
     pub flip_probability: f32,
     /// Seconds since the heading was found.
     pub heading_age: f32,
+    /// Whether what follows is known.
+    pub motion_known: bool,
+    /// Velocity, metres per second.
+    pub velocity: Vector3,
+    /// Its covariance along x and y.
+    pub velocity_covariance: [f64; 4],
+    /// Acceleration, metres per second squared.
+    pub acceleration: Vector3,
+    /// Its covariance along x and y.
+    pub acceleration_covariance: [f64; 4],
+    /// About z, radians per second.
+    pub turn_rate: f32,
+    /// Its variance.
+    pub turn_rate_variance: f32,
     /// Key components found in this frame.
     pub components: Vec<KeyComponent>,
     /// Names of the cameras that saw it.
@@ -69,6 +95,8 @@ pub struct ObjectArray {
     pub header: Header,
     /// Name of the camera; empty for the scene.
     pub camera: String,
+    /// How the vehicle's own motion is known.
+    pub ego_motion: String,
     /// Empty when nothing was seen.
     pub objects: Vec<Object>,
 }

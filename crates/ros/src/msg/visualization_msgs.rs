@@ -50,7 +50,7 @@ pub struct Marker {
     pub lifetime: Duration,
     /// Whether it moves with its frame until sent again.
     pub frame_locked: bool,
-    /// Points of lines and lists; unused.
+    /// Points of lines and lists.
     pub points: Vec<Point>,
     /// Colours of points; unused.
     pub colors: Vec<ColorRGBA>,
@@ -73,6 +73,8 @@ pub struct Marker {
 impl Marker {
     /// `kind` of an arrow along x.
     pub const ARROW: i32 = 0;
+    /// Points joined by a line.
+    pub const LINE_STRIP: i32 = 4;
     /// `kind` of a box.
     pub const CUBE: i32 = 1;
     /// `kind` of a text that faces the viewer.

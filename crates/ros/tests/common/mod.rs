@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 use roadwatch_core::{
-    BoxPx, CameraId, CameraModel, CameraName, Detection, Distortion, Frame, Heading,
+    BoxPx, CameraId, CameraModel, CameraName, Detection, Distortion, Ego, Frame, Heading,
     HeadingCandidates, Image, ImageSize, Intrinsics, KeptHeading, Located, Location, Method, Mount,
     ObjectClass, Oriented, Output, PerFrame, Perceived, Pixels, Rig, RigCamera, Scene, SceneObject,
     Score, SizeLwh, SlopeEvidence, Timestamp, Track, TrackId,
@@ -65,10 +65,13 @@ pub(crate) fn outputs(round: i64) -> Vec<Output> {
         track,
         seen_by: vec![CameraId(0)],
         seen_at: front_at,
+        stamp: front_at,
+        trail: Vec::new(),
     });
     let scene = Scene {
         seq: round.unsigned_abs(),
         stamp: rear_at,
+        ego: Ego::default(),
         objects: objects.collect(),
     };
     vec![
@@ -95,6 +98,7 @@ pub(crate) fn of_camera(id: u8, round: i64, captured_at: Timestamp, items: Vec<T
     Output::Camera(Arc::new(Perceived {
         tracks: PerFrame { frame, items },
         unlocated,
+        ego: Ego::default(),
     }))
 }
 
@@ -141,5 +145,6 @@ pub(crate) fn track(id: u64, class: &str, yaw_rad: Option<f64>) -> Track {
             }),
             components: Vec::new(),
         },
+        motion: None,
     }
 }

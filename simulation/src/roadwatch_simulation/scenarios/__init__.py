@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 
 from ..errors import SimulationError
 from ..scene import Scene
-from . import paper, study
+from . import paper, study, tracking
 from .drive import traffic
+from .stage import FRAMES
 from .training import training_scene
 
 
@@ -36,6 +37,16 @@ SCENARIOS: dict[str, Scenario] = {
     "car_row": Scenario("three cars side by side, 15, 30 and 45 m ahead in turns", 30, study.car_row),
     "traffic": Scenario("six cameras on a car in moving traffic", 120, traffic),
     "training": Scenario("one random picture for training a detector", 1, _one_picture),
+    "tracking_crossing": Scenario("cars cross before six standing cameras", FRAMES, tracking.crossing),
+    "tracking_overtaking": Scenario("a car overtakes six cameras, they another", FRAMES, tracking.overtaking),
+    "tracking_occlusion": Scenario("a bus hides a parked and a moving car", FRAMES, tracking.occlusion),
+    "tracking_parked_row": Scenario("six cameras drive between parked cars", FRAMES, tracking.parked_row),
+    "tracking_u_turn": Scenario("a car ahead turns round and comes back", FRAMES, tracking.u_turn),
+    "tracking_handover": Scenario(
+        "a car circles six standing cameras", tracking.HANDOVER_FRAMES, tracking.handover
+    ),
+    "tracking_turning": Scenario("six cameras turn left at a junction", FRAMES, tracking.turning),
+    "tracking_people": Scenario("people walk past each other before six cameras", FRAMES, tracking.people),
 }
 
 

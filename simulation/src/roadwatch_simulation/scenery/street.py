@@ -30,6 +30,11 @@ def build_street(seed: int) -> Place:
     return site.place()
 
 
+def street_section(seed: int) -> Section:
+    """The cross-section of the street with that seed, without building it."""
+    return draw_section(Site("street", seed).rng)
+
+
 def _add_far_road(site: Site, section: Section) -> None:
     for reach in ((SPAN_M[0] - 220.0, SPAN_M[0]), (SPAN_M[1], SPAN_M[1] + 220.0)):
         half = section.kerb_line_m

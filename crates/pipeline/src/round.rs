@@ -1,7 +1,7 @@
-//! One scene per rig round: each camera's next frame once.
+//! Rig rounds: each camera's next frame once.
 
 use crate::camera_set::CameraSet;
-use roadwatch_core::{CameraId, Perceived, Scene, SceneObject, Timestamp};
+use roadwatch_core::{CameraId, Perceived, Round};
 use std::{
     collections::BTreeMap,
     sync::Arc,
@@ -12,7 +12,7 @@ use std::{
 ///
 /// A slow machine does not split rounds: the inbox serves every camera whose frame waits before it serves
 /// one twice, so a round only stays open for cameras that have nothing to say.
-pub struct SceneAssembler {
+pub struct RoundAssembler {
     timeout: Option<Duration>,
     seq: u64,
     round: BTreeMap<CameraId, Option<Arc<Perceived>>>,
@@ -20,7 +20,7 @@ pub struct SceneAssembler {
     last_heard: Option<Instant>,
 }
 
-impl SceneAssembler {
+impl RoundAssembler {
     /// Rounds that wait for silent cameras at most for `timeout`, or for ever with `None`.
     #[must_use]
     pub fn new(timeout: Option<Duration>) -> Self {
@@ -35,7 +35,7 @@ impl SceneAssembler {
 
     /// Takes a camera's next frame, or `None` when that frame was dropped.
     ///
-    /// Gives the scene when the round is complete: every camera of `live` has spoken. A second frame of a
+    /// Gives the round when the round is complete: every camera of `live` has spoken. A second frame of a
     /// camera replaces its first, or closes a round that is older than the timeout and begins the next.
     pub fn offer(
         &mut self,
@@ -43,7 +43,7 @@ impl SceneAssembler {
         perceived: Option<Arc<Perceived>>,
         live: &CameraSet,
         now: Instant,
-    ) -> Vec<Scene> {
+    ) -> Vec<Round> {
         let speaks_again = self.round.contains_key(&camera);
         let overdue = if speaks_again && self.left(self.began, now) == Some(Duration::ZERO) {
             self.close()
@@ -62,8 +62,8 @@ impl SceneAssembler {
         overdue.into_iter().chain(complete).collect()
     }
 
-    /// Gives the scene when nobody has spoken for the timeout.
-    pub fn tick(&mut self, now: Instant) -> Option<Scene> {
+    /// Gives the round when nobody has spoken for the timeout.
+    pub fn tick(&mut self, now: Instant) -> Option<Round> {
         if self.due_in(now) == Some(Duration::ZERO) {
             self.close()
         } else {
@@ -76,38 +76,26 @@ impl SceneAssembler {
         self.last_heard = self.last_heard.map(|_| now);
     }
 
-    /// Time until [`SceneAssembler::tick`] may give a scene; `None` while no round waits.
+    /// Time until [`RoundAssembler::tick`] may give one; `None` while no round waits.
     #[must_use]
     pub fn due_in(&self, now: Instant) -> Option<Duration> {
         self.left(self.last_heard, now)
     }
 
     /// Ends the round as it is; `None` when no frame of it was perceived.
-    pub fn close(&mut self) -> Option<Scene> {
+    pub fn close(&mut self) -> Option<Round> {
         self.began = None;
         self.last_heard = None;
         let round = std::mem::take(&mut self.round);
-        let mut stamp: Option<Timestamp> = None;
-        let mut objects = Vec::new();
-        for (camera, perceived) in round {
-            let Some(perceived) = perceived else {
-                continue;
-            };
-            let seen_at = perceived.tracks.frame.captured_at;
-            stamp = stamp.max(Some(seen_at));
-            objects.extend(perceived.tracks.items.iter().map(|track| SceneObject {
-                track: track.clone(),
-                seen_by: vec![camera],
-                seen_at,
-            }));
-        }
-        let scene = Scene {
+        let perceived: Vec<_> = round.into_values().flatten().collect();
+        let captured = perceived.iter().map(|one| one.tracks.frame.captured_at);
+        let round = Round {
             seq: self.seq,
-            stamp: stamp?,
-            objects,
+            stamp: captured.max()?,
+            perceived,
         };
         self.seq += 1;
-        Some(scene)
+        Some(round)
     }
 
     fn left(&self, since: Option<Instant>, now: Instant) -> Option<Duration> {
@@ -118,7 +106,7 @@ impl SceneAssembler {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use roadwatch_core::{Frame, Image, ImageSize, PerFrame, Pixels};
+    use roadwatch_core::{Ego, Frame, Image, ImageSize, PerFrame, Pixels, Timestamp};
 
     const TIMEOUT: Duration = Duration::from_millis(200);
 
@@ -140,10 +128,11 @@ mod tests {
                 items: Vec::new(),
             },
             unlocated: Vec::new(),
+            ego: Ego::default(),
         }))
     }
 
-    fn stamps(scenes: impl IntoIterator<Item = Scene>) -> Vec<i64> {
+    fn stamps(scenes: impl IntoIterator<Item = Round>) -> Vec<i64> {
         scenes
             .into_iter()
             .map(|scene| scene.stamp.as_nanos())
@@ -153,7 +142,7 @@ mod tests {
     #[test]
     fn slow_rounds_stay_whole() {
         let live: CameraSet = [CameraId(0), CameraId(1)].into_iter().collect();
-        let mut scenes = SceneAssembler::new(Some(TIMEOUT));
+        let mut scenes = RoundAssembler::new(Some(TIMEOUT));
         let began = Instant::now();
         // Half a second between two frames of one round, as on a slow machine; nobody ticks in between.
         assert!(
@@ -171,7 +160,7 @@ mod tests {
     #[test]
     fn a_camera_that_speaks_again_closes_an_overdue_round() {
         let live: CameraSet = [CameraId(0), CameraId(1)].into_iter().collect();
-        let mut scenes = SceneAssembler::new(Some(TIMEOUT));
+        let mut scenes = RoundAssembler::new(Some(TIMEOUT));
         let began = Instant::now();
         let at = |millis| began + Duration::from_millis(millis);
         assert!(
@@ -193,9 +182,9 @@ mod tests {
     }
 
     #[test]
-    fn a_round_of_dropped_frames_gives_no_scene() {
+    fn a_round_of_dropped_frames_gives_nothing() {
         let live: CameraSet = [CameraId(0)].into_iter().collect();
-        let mut scenes = SceneAssembler::new(None);
+        let mut scenes = RoundAssembler::new(None);
         assert!(
             scenes
                 .offer(CameraId(0), None, &live, Instant::now())

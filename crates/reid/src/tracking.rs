@@ -1,0 +1,15 @@
+//! Tracking: an extended Kalman filter for each object, in odom; association by place, image and class.
+
+mod association;
+mod duplicates;
+mod filter;
+mod found;
+mod heading;
+mod object;
+mod options;
+mod publish;
+mod tracker;
+mod view;
+
+pub use options::TrackingOptions;
+pub use tracker::Tracker;

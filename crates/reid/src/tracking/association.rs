@@ -1,0 +1,159 @@
+//! Which detection of a frame is which object: by place, by image, by class.
+
+use super::{
+    filter::{Filter, Fix},
+    object::Object,
+    view::{Expected, View},
+};
+use crate::assignment::{Pair, assign};
+use roadwatch_core::{BoxPx, Detection, Ego, Located, ObjectClass, Oriented};
+
+/// Least overlap by which a detection is taken for an object before it has a place.
+const LEAST_OVERLAP: f32 = 0.3;
+/// A place that surprises by more than this many squared deviations is another object's; 16 leaves out one in 3000.
+const MOST_SURPRISE: f64 = 16.0;
+/// Boxes that overlap by this much, in the eyes of one camera, are one object's whatever their places say …
+const SURE_OVERLAP: f32 = 0.5;
+/// … up to this.
+const MOST_SURPRISE_OVERLAPPING: f64 = 100.0;
+/// What no overlap at all costs, in squared deviations; half an overlap costs half.
+const NO_OVERLAP: f64 = 8.0;
+/// What another class of the same kind costs: detectors waver between car and truck.
+const OTHER_CLASS: f64 = 3.0;
+/// What it costs to begin a new object.
+const NEW_OBJECT: f64 = 24.0;
+/// Nobody looks for partners further away than this, metres …
+const NEAR_M: f64 = 6.0;
+/// … or this share of the distance.
+const NEAR_SHARE: f64 = 0.4;
+
+/// Classes that detectors take for each other.
+fn kind(class: &ObjectClass) -> u8 {
+    match class.as_str() {
+        "car" | "truck" | "bus" | "van" | "train" | "trailer" => 0,
+        "bicycle" | "motorcycle" | "cyclist" => 1,
+        "person" => 2,
+        _ => 3,
+    }
+}
+
+/// Whether both may be one object's.
+pub(super) fn may_be_one(one: &ObjectClass, other: &ObjectClass) -> bool {
+    one == other || kind(one) == kind(other) && kind(one) < 2
+}
+
+/// What a frame may show: of each object the box it would have.
+pub(super) fn expected(objects: &[Object], view: &View<'_>) -> Vec<Option<Expected>> {
+    let expect = |object: &Object| view.expect(&object.solid_at(view.at), &object.glimpses);
+    objects.iter().map(expect).collect()
+}
+
+/// The object that each detection shows, by overlap in the image alone.
+pub(super) fn by_image(
+    objects: &[Object],
+    expected: &[Option<Expected>],
+    detections: &[Detection],
+) -> Vec<Option<usize>> {
+    let mut pairs = Vec::new();
+    for (row, detection) in detections.iter().enumerate() {
+        for (column, expected) in expected.iter().enumerate() {
+            let overlap = expected.map_or(0.0, |one| one.box_px.iou(&detection.box_px));
+            if overlap >= LEAST_OVERLAP && may_be_one(objects[column].class(), &detection.class) {
+                let gain = f64::from(overlap);
+                pairs.push(Pair { row, column, gain });
+            }
+        }
+    }
+    assign(detections.len(), objects.len(), &pairs)
+}
+
+/// Where a located object is, in odom, with the height of its centre; `None` of one that is only remembered, and of
+/// one that is nowhere.
+pub(super) fn fix(located: &Located, view: &View<'_>, ego: &Ego) -> Option<(Fix, f64)> {
+    let location = &located.location;
+    let center = ego.odom_from_base * location.position;
+    let covariance = (ego.odom_from_base * location.covariance).matrix;
+    let fix = Fix {
+        place: center.coords.coords.xy(),
+        covariance: covariance.fixed_view::<2, 2>(0, 0) * view.doubt(&located.detection.box_px),
+    };
+    let numbers = fix.place.iter().chain(fix.covariance.iter());
+    let is_whole = numbers.chain([&center.z()]).all(|one| one.is_finite());
+    (is_whole && !location.held).then_some((fix, center.z()))
+}
+
+/// A frame's located objects with what was tracked before it.
+pub(super) struct Candidates<'a> {
+    pub(super) objects: &'a [Object],
+    pub(super) expected: &'a [Option<Expected>],
+    pub(super) view: &'a View<'a>,
+}
+
+impl Candidates<'_> {
+    /// The tracked object that each located one is; `None` of who is new.
+    pub(super) fn assign(&self, seen: &[Oriented], fixes: &[Option<Fix>]) -> Vec<Option<usize>> {
+        let mut beliefs: Vec<Option<Filter>> = vec![None; self.objects.len()];
+        let mut pairs = Vec::new();
+        for (row, (one, fix)) in seen.iter().zip(fixes).enumerate() {
+            let detection = &one.located.detection;
+            for (column, object) in self.objects.iter().enumerate() {
+                if !may_be_one(object.class(), &detection.class) {
+                    continue;
+                }
+                let overlap = self.overlap(column, &detection.box_px);
+                let other_class = if object.class() == &detection.class {
+                    0.0
+                } else {
+                    OTHER_CLASS
+                };
+                let by_place = match fix {
+                    Some(fix) => self.by_place(fix, column, overlap, &mut beliefs[column]),
+                    // Where it is nobody knows, so that it is in the image what it was.
+                    None => (overlap >= LEAST_OVERLAP).then_some(0.0),
+                };
+                let cost = by_place.map(|squared| {
+                    squared.min(MOST_SURPRISE)
+                        + other_class
+                        + NO_OVERLAP * (1.0 - f64::from(overlap))
+                });
+                pairs.extend(cost.filter(|cost| *cost < NEW_OBJECT).map(|cost| Pair {
+                    row,
+                    column,
+                    gain: NEW_OBJECT - cost,
+                }));
+            }
+        }
+        assign(seen.len(), self.objects.len(), &pairs)
+    }
+
+    fn overlap(&self, column: usize, box_px: &BoxPx) -> f32 {
+        self.expected[column].map_or(0.0, |one| one.box_px.iou(box_px))
+    }
+
+    /// How much a place surprises; `None` when too much.
+    fn by_place(
+        &self,
+        fix: &Fix,
+        column: usize,
+        overlap: f32,
+        belief: &mut Option<Filter>,
+    ) -> Option<f64> {
+        let object = &self.objects[column];
+        if overlap == 0.0 && !self.is_near(fix, object) {
+            return None;
+        }
+        let belief = belief.get_or_insert_with(|| object.belief_at(self.view.at));
+        let squared = belief.surprise(fix);
+        let most = match overlap >= SURE_OVERLAP {
+            true => MOST_SURPRISE_OVERLAPPING,
+            false => MOST_SURPRISE,
+        };
+        (squared <= most).then_some(squared)
+    }
+
+    fn is_near(&self, fix: &Fix, object: &Object) -> bool {
+        let expected = object.solid_at(self.view.at).center.coords.xy();
+        let away = (fix.place - self.view.eye).norm();
+        (expected - fix.place).norm() < NEAR_M.max(NEAR_SHARE * away)
+    }
+}

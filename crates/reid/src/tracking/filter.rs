@@ -1,0 +1,341 @@
+//! What is believed of one object: an extended Kalman filter over place, motion, heading and what its box gets wrong.
+
+use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
+use std::f64::consts::PI;
+
+/// Numbers of the state.
+pub(super) const DIMS: usize = 8;
+/// The state: position (0, 1), velocity (2, 3) and acceleration (4, 5) in odom; heading (6) and turn rate (7).
+pub(super) type State = SVector<f64, DIMS>;
+pub(super) type StateCovariance = SMatrix<f64, DIMS, DIMS>;
+pub(super) type Row = SMatrix<f64, 1, DIMS>;
+
+pub(super) const VELOCITY: usize = 2;
+pub(super) const ACCELERATION: usize = 4;
+pub(super) const HEADING: usize = 6;
+pub(super) const TURN: usize = 7;
+
+/// How things of a kind move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Mobility {
+    /// Of the speed when it is first seen, metres per second.
+    pub(super) speed_std_m_s: f64,
+    /// Of the acceleration while it moves, metres per second squared.
+    pub(super) acceleration_std_m_s2: f64,
+    /// How long an acceleration lasts, seconds.
+    pub(super) acceleration_lasts_s: f64,
+    /// Of the curvature of its path, 1 per metre; `None` where it may turn on the spot.
+    pub(super) curvature_std: Option<f64>,
+}
+
+/// Cars drive 14 m/s in cities, brake by half a metre per second squared and follow bends of sixteen metres and more, most of the time; they
+/// move along their heading. (Bar-Shalom, Li and Kirubarajan 2001, sections 6.2 and 8.2, on accelerations that fade.)
+pub(super) const VEHICLE: Mobility = Mobility {
+    speed_std_m_s: 6.0,
+    acceleration_std_m_s2: 0.6,
+    acceleration_lasts_s: 1.2,
+    curvature_std: Some(0.06),
+};
+/// People walk 1.4 m/s and turn on the spot.
+pub(super) const WALKER: Mobility = Mobility {
+    speed_std_m_s: 1.2,
+    acceleration_std_m_s2: 0.7,
+    acceleration_lasts_s: 0.5,
+    curvature_std: None,
+};
+
+/// What stands rarely starts: accelerations of standing objects are that share of moving ones'.
+const STANDING_SHARE: f64 = 0.15;
+/// At this speed an object moves, metres per second.
+const MOVING_M_S: f64 = 1.5;
+/// How long a turn lasts, seconds.
+const TURN_LASTS_S: f64 = 3.0;
+/// Turn rates of something that stands, radians per second.
+const STANDING_TURN_STD: f64 = 0.02;
+/// Turn rates of something that turns on the spot, radians per second.
+const ON_THE_SPOT_TURN_STD: f64 = 0.7;
+/// Share of a fix's variance that is the same from frame to frame: the object's size, the ground under it, what hides it.
+/// No number of frames averages it out (measured on labelled drives: the autocorrelation of errors of standing objects
+/// stays above it for two seconds), so it is not the filter's, and is added to what is published.
+const LASTING_SHARE: f64 = 0.7;
+/// What lasts changes by about this share of its deviation in a second, while the object is seen from elsewhere: as an
+/// apparent speed.
+const DRIFT_PER_S: f64 = 0.4;
+/// Of what lasts, this much is kept from fix to fix when the new fix is worse, as when the image's edge cuts the object …
+const BETTER_KNOWN_KEPT: f64 = 0.95;
+/// … and this much when it is better.
+const WORSE_KNOWN_KEPT: f64 = 0.7;
+/// Of a speed's variance at first sight, this much is left to an object that is believed anew: it drives on.
+const RESTART_SHARE: f64 = 0.04;
+/// Boxes of one object jump by this much whatever their covariances say, metres.
+const LEAST_NOISE_M: f64 = 0.05;
+/// Sideways speed of the centre of something that moves along its heading, metres per second …
+const SLIP_M_S: f64 = 0.2;
+/// … and its share of the speed: headings of one object err alike from frame to frame, by some ten degrees.
+const SLIP_SHARE: f64 = 0.17;
+/// Sideways motion beyond this many squared deviations is a wrong heading: it counts for that much less.
+const MOST_SLIP_SURPRISE: f64 = 4.0;
+/// A heading no better known than this says nothing of where something moves, radians.
+const MOST_HEADING_STD: f64 = 0.5;
+/// An innovation beyond this many squared deviations is a mistake of some kind: it counts for that much less.
+const MOST_SURPRISE: f64 = 9.0;
+/// After this many such innovations in a row the belief is the mistake.
+const MOST_SURPRISES: u32 = 3;
+
+/// The belief at one moment.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Filter {
+    pub(super) mobility: Mobility,
+    pub(super) mean: State,
+    pub(super) covariance: StateCovariance,
+    /// Whether anything ever said which way it points.
+    pub(super) heading_known: bool,
+    /// Log-odds that front is front, by what was seen of it.
+    pub(super) front: f64,
+    /// Covariance of what the last fixes have in common, which the state's does not hold.
+    lasting: Matrix2<f64>,
+    /// Fixes in a row that surprised.
+    surprises: u32,
+}
+
+/// Where an object was seen: in odom.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Fix {
+    /// Where the box says it is.
+    pub(super) place: Vector2<f64>,
+    /// Covariance of that.
+    pub(super) covariance: Matrix2<f64>,
+}
+
+impl Fix {
+    fn noise(&self) -> Matrix2<f64> {
+        self.covariance + Matrix2::identity() * (LEAST_NOISE_M * LEAST_NOISE_M)
+    }
+}
+
+pub(super) fn left_of(direction: Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(-direction.y, direction.x)
+}
+
+impl Filter {
+    /// What one box says, of something of which nothing was known.
+    pub(super) fn new(fix: &Fix, mobility: Mobility) -> Self {
+        let mut mean = State::zeros();
+        mean.fixed_rows_mut::<2>(0).copy_from(&fix.place);
+        let mut covariance = StateCovariance::zeros();
+        covariance
+            .fixed_view_mut::<2, 2>(0, 0)
+            .copy_from(&fix.noise());
+        for axis in 0..2 {
+            covariance[(VELOCITY + axis, VELOCITY + axis)] = mobility.speed_std_m_s.powi(2);
+            covariance[(ACCELERATION + axis, ACCELERATION + axis)] =
+                mobility.acceleration_std_m_s2.powi(2);
+        }
+        covariance[(HEADING, HEADING)] = PI * PI / 3.0;
+        covariance[(TURN, TURN)] = STANDING_TURN_STD.powi(2);
+        Self {
+            mobility,
+            mean,
+            covariance,
+            heading_known: false,
+            front: 0.0,
+            surprises: 0,
+            lasting: fix.covariance * LASTING_SHARE,
+        }
+    }
+
+    pub(super) fn position(&self) -> Vector2<f64> {
+        self.mean.fixed_rows::<2>(0).into_owned()
+    }
+
+    pub(super) fn velocity(&self) -> Vector2<f64> {
+        self.mean.fixed_rows::<2>(VELOCITY).into_owned()
+    }
+
+    /// Covariance of the velocity, with how fast what fixes have in common changes.
+    pub(super) fn velocity_covariance(&self) -> Matrix2<f64> {
+        self.covariance.fixed_view::<2, 2>(VELOCITY, VELOCITY)
+            + self.lasting * (DRIFT_PER_S * DRIFT_PER_S)
+    }
+
+    /// Where it will be, cheaply.
+    pub(super) fn position_after(&self, seconds: f64) -> Vector2<f64> {
+        let acceleration = self.mean.fixed_rows::<2>(ACCELERATION);
+        self.position() + self.velocity() * seconds + acceleration * (seconds * seconds / 2.0)
+    }
+
+    /// The belief some time later.
+    pub(super) fn predict(&mut self, seconds: f64) {
+        if seconds <= 0.0 {
+            return;
+        }
+        let (velocity, turn) = (self.velocity(), self.mean[TURN]);
+        let mobility = self.mobility;
+        let kept = |lasts_s: f64| (-seconds / lasts_s).exp();
+        let (accelerating, turning) = (kept(mobility.acceleration_lasts_s), kept(TURN_LASTS_S));
+        let mut step = StateCovariance::identity();
+        for axis in 0..2 {
+            step[(axis, VELOCITY + axis)] = seconds;
+            step[(axis, ACCELERATION + axis)] = seconds * seconds / 2.0;
+            step[(VELOCITY + axis, ACCELERATION + axis)] = seconds;
+            step[(ACCELERATION + axis, ACCELERATION + axis)] = accelerating;
+        }
+        step[(HEADING, TURN)] = seconds;
+        step[(TURN, TURN)] = turning;
+        let mut mean = step * self.mean;
+        // The velocity turns with the object.
+        let turned = left_of(velocity) * seconds;
+        for axis in 0..2 {
+            mean[VELOCITY + axis] += turned[axis] * turn;
+            step[(VELOCITY + axis, TURN)] = turned[axis];
+        }
+        step[(VELOCITY, VELOCITY + 1)] -= turn * seconds;
+        step[(VELOCITY + 1, VELOCITY)] += turn * seconds;
+        mean[HEADING] = wrapped(mean[HEADING]);
+        let mut covariance = step * self.covariance * step.transpose();
+        let grown = |kept: f64, variance: f64| variance * (1.0 - kept * kept);
+        let speed = velocity.norm();
+        let moving = STANDING_SHARE + (1.0 - STANDING_SHARE) * (speed / MOVING_M_S).min(1.0);
+        let acceleration = (mobility.acceleration_std_m_s2 * moving).powi(2);
+        for axis in 0..2 {
+            let at = ACCELERATION + axis;
+            covariance[(at, at)] += grown(accelerating, acceleration);
+        }
+        let turn_std = mobility
+            .curvature_std
+            .map_or(ON_THE_SPOT_TURN_STD, |curvature| {
+                STANDING_TURN_STD
+                    .max(curvature * speed)
+                    .min(ON_THE_SPOT_TURN_STD)
+            });
+        covariance[(TURN, TURN)] += grown(turning, turn_std * turn_std);
+        self.mean = mean;
+        self.covariance = covariance;
+    }
+
+    /// Covariance of the position, with what all fixes have in common.
+    pub(super) fn position_covariance(&self) -> Matrix2<f64> {
+        self.covariance.fixed_view::<2, 2>(0, 0) + self.lasting
+    }
+
+    /// Squared Mahalanobis distance of a fix; infinite where it has none. Another camera's fixes do not err alike, so all
+    /// of the fix's own covariance counts.
+    pub(super) fn surprise(&self, fix: &Fix) -> f64 {
+        let covariance = self.covariance.fixed_view::<2, 2>(0, 0) + fix.noise();
+        squared(&(fix.place - self.position()), &covariance)
+    }
+
+    /// Takes in where it was seen.
+    pub(super) fn correct(&mut self, fix: &Fix) {
+        let innovation = fix.place - self.position();
+        let spread = self.covariance.fixed_columns::<2>(0).into_owned();
+        let mut covariance = spread.fixed_rows::<2>(0) + fix.noise();
+        let excess = squared(&innovation, &covariance) / MOST_SURPRISE;
+        self.surprises = if excess > 1.0 { self.surprises + 1 } else { 0 };
+        if self.surprises >= MOST_SURPRISES {
+            // Not the fixes err, but the belief.
+            self.restart(fix);
+            return;
+        }
+        covariance *= excess.max(1.0);
+        let Some(inverse) = covariance.try_inverse() else {
+            return;
+        };
+        let gain = spread * inverse;
+        self.mean += gain * innovation;
+        self.covariance -= gain * spread.transpose();
+        let lasting = fix.covariance * LASTING_SHARE;
+        let kept = match lasting.trace() > self.lasting.trace() {
+            true => BETTER_KNOWN_KEPT,
+            false => WORSE_KNOWN_KEPT,
+        };
+        self.lasting = self.lasting * kept + lasting * (1.0 - kept);
+        self.settle();
+    }
+
+    /// Believes a fix, and of its motion and heading only what was known of it at first.
+    fn restart(&mut self, fix: &Fix) {
+        let (heading_rad, variance) = (self.mean[HEADING], self.covariance[(HEADING, HEADING)]);
+        let (known, front) = (self.heading_known, self.front);
+        let velocity = self.velocity();
+        *self = Self::new(fix, self.mobility);
+        self.mean.fixed_rows_mut::<2>(VELOCITY).copy_from(&velocity);
+        for axis in 0..2 {
+            self.covariance[(VELOCITY + axis, VELOCITY + axis)] *= RESTART_SHARE;
+        }
+        if known {
+            self.set_heading(heading_rad, variance);
+            self.front = front;
+        }
+    }
+
+    /// Takes in one number that depends on the state by `by` and is off by `innovation`.
+    pub(super) fn correct_by(&mut self, by: &Row, innovation: f64, variance: f64) {
+        let spread = self.covariance * by.transpose();
+        let gain = spread / ((by * spread)[0] + variance);
+        self.mean += gain * innovation;
+        self.covariance -= gain * spread.transpose();
+        self.settle();
+    }
+
+    /// What moves along its heading does not move sideways. Says something of both.
+    pub(super) fn keep_to_heading(&mut self) {
+        let heading_std = self.covariance[(HEADING, HEADING)].sqrt();
+        if self.mobility.curvature_std.is_none()
+            || !self.heading_known
+            || heading_std > MOST_HEADING_STD
+        {
+            return;
+        }
+        let (sin, cos) = self.mean[HEADING].sin_cos();
+        let velocity = self.velocity();
+        let along = velocity.x * cos + velocity.y * sin;
+        let across = velocity.y * cos - velocity.x * sin;
+        let mut by = Row::zeros();
+        by[VELOCITY] = -sin;
+        by[VELOCITY + 1] = cos;
+        by[HEADING] = -along;
+        let slip = SLIP_M_S.hypot(SLIP_SHARE * along);
+        let spread = (by * self.covariance * by.transpose())[0] + slip * slip;
+        let excess = (across * across / spread / MOST_SLIP_SURPRISE).max(1.0);
+        self.correct_by(&by, -across, slip * slip + spread * (excess - 1.0));
+    }
+
+    /// Begins anew with a heading.
+    pub(super) fn set_heading(&mut self, heading_rad: f64, variance: f64) {
+        self.mean[HEADING] = wrapped(heading_rad);
+        self.covariance.row_mut(HEADING).fill(0.0);
+        self.covariance.column_mut(HEADING).fill(0.0);
+        self.covariance[(HEADING, HEADING)] = variance;
+        self.heading_known = true;
+    }
+
+    /// Symmetric, and an angle is an angle.
+    fn settle(&mut self) {
+        self.covariance = (self.covariance + self.covariance.transpose()) * 0.5;
+        self.mean[HEADING] = wrapped(self.mean[HEADING]);
+    }
+
+    /// Whether all numbers are numbers, and no variance is negative.
+    pub(super) fn is_sound(&self) -> bool {
+        let diagonal = self.covariance.diagonal();
+        self.mean.iter().all(|one| one.is_finite())
+            && diagonal.iter().all(|one| one.is_finite() && *one >= 0.0)
+    }
+}
+
+/// Squared Mahalanobis distance; infinite where the covariance has no inverse.
+pub(super) fn squared(apart: &Vector2<f64>, covariance: &Matrix2<f64>) -> f64 {
+    let inverse = covariance.try_inverse();
+    inverse.map_or(f64::INFINITY, |inverse| apart.dot(&(inverse * apart)))
+}
+
+/// An angle in -pi..=pi.
+pub(super) fn wrapped(angle_rad: f64) -> f64 {
+    let turned = angle_rad.rem_euclid(2.0 * PI);
+    if turned > PI {
+        turned - 2.0 * PI
+    } else {
+        turned
+    }
+}
