@@ -75,7 +75,12 @@ fn speeds_over_ground_are_known_whoever_moves() {
         let (_, _, report) = played(scenario, imperfect());
         let moving = report.motion.moving;
         assert!(moving.n > 50, "{name}: {moving:?}");
-        assert!(moving.p50_m_s.expect("speeds") < 0.5, "{name}: {moving:?}");
+        // Half a metre per second, a little more while the vehicle itself turns.
+        let most_m_s = if name == "turning" { 0.6 } else { 0.5 };
+        assert!(
+            moving.p50_m_s.expect("speeds") < most_m_s,
+            "{name}: {moving:?}"
+        );
         assert!(moving.nees.expect("speeds") < 1.5, "{name}: {moving:?}");
     }
     // Parked cars passed at ten metres per second stand.

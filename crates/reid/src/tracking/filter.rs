@@ -54,10 +54,13 @@ const TURN_LASTS_S: f64 = 3.0;
 const STANDING_TURN_STD: f64 = 0.02;
 /// Turn rates of something that turns on the spot, radians per second.
 const ON_THE_SPOT_TURN_STD: f64 = 0.7;
+/// Share of a fix's variance that counts as its noise. Less is new in every frame, about a tenth, but what is not changes within
+/// a second as the object moves, and a filter that took it for motion would follow it.
+const COUNTED_SHARE: f64 = 0.5;
 /// Share of a fix's variance that is the same from frame to frame: the object's size, the ground under it, what hides it.
 /// No number of frames averages it out (measured on labelled drives: the autocorrelation of errors of standing objects
 /// stays above it for two seconds), so it is not the filter's, and is added to what is published.
-const LASTING_SHARE: f64 = 0.7;
+const LASTING_SHARE: f64 = 0.85;
 /// What lasts changes by about this share of its deviation in a second, while the object is seen from elsewhere: as an
 /// apparent speed.
 const DRIFT_PER_S: f64 = 0.4;
@@ -229,7 +232,7 @@ impl Filter {
     pub(super) fn correct(&mut self, fix: &Fix) {
         let innovation = fix.place - self.position();
         let spread = self.covariance.fixed_columns::<2>(0).into_owned();
-        let mut covariance = spread.fixed_rows::<2>(0) + fix.noise();
+        let mut covariance = spread.fixed_rows::<2>(0) + fix.noise() * COUNTED_SHARE;
         let excess = squared(&innovation, &covariance) / MOST_SURPRISE;
         self.surprises = if excess > 1.0 { self.surprises + 1 } else { 0 };
         if self.surprises >= MOST_SURPRISES {

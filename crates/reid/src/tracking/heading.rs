@@ -7,8 +7,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Looks at one object see much the same, so each counts for this share of what it says of front and back.
 const LOOK_SHARE: f64 = 0.4;
-/// Nobody is surer than this of front and back by looks alone (log-odds; about 1 in 150).
-const MOST_FRONT: f64 = 5.0;
+/// Nobody is surer than this of front and back by looks alone (log-odds; 1 in 20): less sure than by motion.
+const MOST_FRONT: f64 = 3.0;
 /// No look is surer than this, whatever it says.
 const LEAST_FLIP: f64 = 0.01;
 /// Looks err the same way from frame to frame: a heading gets no better than this share of one look's deviation.
