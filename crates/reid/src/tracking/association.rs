@@ -6,6 +6,7 @@ use super::{
     view::{Expected, View},
 };
 use crate::assignment::{Pair, assign};
+use nalgebra::Vector2;
 use roadwatch_core::{BoxPx, Detection, Ego, Located, ObjectClass, Oriented};
 
 /// Least overlap by which a detection is taken for an object before it has a place.
@@ -42,22 +43,42 @@ pub(super) fn may_be_one(one: &ObjectClass, other: &ObjectClass) -> bool {
     one == other || kind(one) == kind(other) && kind(one) < 2
 }
 
-/// What a frame may show: of each object the box it would have.
-pub(super) fn expected(objects: &[Object], view: &View<'_>) -> Vec<Option<Expected>> {
-    let expect = |object: &Object| view.expect(&object.solid_at(view.at), &object.glimpses);
-    objects.iter().map(expect).collect()
+/// Where an object should be when a frame was captured.
+pub(super) struct Outlook {
+    /// In odom.
+    place: Vector2<f64>,
+    /// In the image; `None` where the camera does not look.
+    pub(super) expected: Option<Expected>,
+}
+
+/// Where every object should be.
+pub(super) fn outlook(objects: &[Object], view: &View<'_>) -> Vec<Outlook> {
+    let look = |object: &Object| {
+        let solid = object.solid_at(view.at);
+        Outlook {
+            place: solid.center.coords.xy(),
+            expected: view.expect(&solid, &object.glimpses),
+        }
+    };
+    objects.iter().map(look).collect()
+}
+
+impl Outlook {
+    fn overlap(&self, box_px: &BoxPx) -> f32 {
+        self.expected.map_or(0.0, |one| one.box_px.iou(box_px))
+    }
 }
 
 /// The object that each detection shows, by overlap in the image alone.
 pub(super) fn by_image(
     objects: &[Object],
-    expected: &[Option<Expected>],
+    outlook: &[Outlook],
     detections: &[Detection],
 ) -> Vec<Option<usize>> {
     let mut pairs = Vec::new();
     for (row, detection) in detections.iter().enumerate() {
-        for (column, expected) in expected.iter().enumerate() {
-            let overlap = expected.map_or(0.0, |one| one.box_px.iou(&detection.box_px));
+        for (column, outlook) in outlook.iter().enumerate() {
+            let overlap = outlook.overlap(&detection.box_px);
             if overlap >= LEAST_OVERLAP && may_be_one(objects[column].class(), &detection.class) {
                 let gain = f64::from(overlap);
                 pairs.push(Pair { row, column, gain });
@@ -85,7 +106,7 @@ pub(super) fn fix(located: &Located, view: &View<'_>, ego: &Ego) -> Option<(Fix,
 /// A frame's located objects with what was tracked before it.
 pub(super) struct Candidates<'a> {
     pub(super) objects: &'a [Object],
-    pub(super) expected: &'a [Option<Expected>],
+    pub(super) outlook: &'a [Outlook],
     pub(super) view: &'a View<'a>,
 }
 
@@ -96,11 +117,17 @@ impl Candidates<'_> {
         let mut pairs = Vec::new();
         for (row, (one, fix)) in seen.iter().zip(fixes).enumerate() {
             let detection = &one.located.detection;
-            for (column, object) in self.objects.iter().enumerate() {
+            let away = fix.as_ref().map(|fix| (fix.place - self.view.eye).norm());
+            for (column, outlook) in self.outlook.iter().enumerate() {
+                let overlap = outlook.overlap(&detection.box_px);
+                // Most are nowhere near, and cost no more than this.
+                if overlap == 0.0 && !is_near(outlook, fix.as_ref().zip(away)) {
+                    continue;
+                }
+                let object = &self.objects[column];
                 if !may_be_one(object.class(), &detection.class) {
                     continue;
                 }
-                let overlap = self.overlap(column, &detection.box_px);
                 let other_class = if object.class() == &detection.class {
                     0.0
                 } else {
@@ -126,10 +153,6 @@ impl Candidates<'_> {
         assign(seen.len(), self.objects.len(), &pairs)
     }
 
-    fn overlap(&self, column: usize, box_px: &BoxPx) -> f32 {
-        self.expected[column].map_or(0.0, |one| one.box_px.iou(box_px))
-    }
-
     /// How much a place surprises; `None` when too much.
     fn by_place(
         &self,
@@ -139,9 +162,6 @@ impl Candidates<'_> {
         belief: &mut Option<Filter>,
     ) -> Option<f64> {
         let object = &self.objects[column];
-        if overlap == 0.0 && !self.is_near(fix, object) {
-            return None;
-        }
         let belief = belief.get_or_insert_with(|| object.belief_at(self.view.at));
         let squared = belief.surprise(fix);
         let most = match overlap >= SURE_OVERLAP {
@@ -150,10 +170,11 @@ impl Candidates<'_> {
         };
         (squared <= most).then_some(squared)
     }
+}
 
-    fn is_near(&self, fix: &Fix, object: &Object) -> bool {
-        let expected = object.solid_at(self.view.at).center.coords.xy();
-        let away = (fix.place - self.view.eye).norm();
-        (expected - fix.place).norm() < NEAR_M.max(NEAR_SHARE * away)
-    }
+/// Whether a place, so far away from the camera, is near enough to ask how near.
+fn is_near(outlook: &Outlook, fix: Option<(&Fix, f64)>) -> bool {
+    fix.is_some_and(|(fix, away)| {
+        (outlook.place - fix.place).norm() < NEAR_M.max(NEAR_SHARE * away)
+    })
 }

@@ -1,6 +1,7 @@
 //! Objects that turn out to be one.
 
 use super::{association::may_be_one, filter::squared, object::Object};
+use nalgebra::Vector2;
 use roadwatch_core::{Timestamp, TrackId};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -28,9 +29,13 @@ impl Duplicates {
     pub(super) fn merge(&mut self, objects: &mut Vec<Object>, at: Timestamp) {
         let (mut one, mut two) = (BTreeMap::new(), BTreeSet::new());
         let mut gone = BTreeSet::new();
-        for (place, younger) in objects.iter().enumerate() {
-            for older in &objects[..place] {
-                if !is_near(older, younger) {
+        let places: Vec<Vector2<f64>> = objects.iter().map(Object::last_place).collect();
+        for (at_younger, younger) in objects.iter().enumerate() {
+            for (at_older, older) in objects[..at_younger].iter().enumerate() {
+                let apart = places[at_older] - places[at_younger];
+                if apart.norm_squared() > NEAR_M * NEAR_M
+                    || !may_be_one(older.class(), younger.class())
+                {
                     continue;
                 }
                 let pair = (older.id, younger.id);
@@ -48,11 +53,6 @@ impl Duplicates {
         objects.retain(|object| !gone.contains(&object.id));
         (self.one, self.two) = (one, two);
     }
-}
-
-fn is_near(older: &Object, younger: &Object) -> bool {
-    (older.last_place() - younger.last_place()).norm() < NEAR_M
-        && may_be_one(older.class(), younger.class())
 }
 
 fn were_seen_at_once(older: &Object, younger: &Object) -> bool {

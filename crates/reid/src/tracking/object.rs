@@ -134,7 +134,8 @@ impl Object {
     }
 
     fn correct(&mut self, at: Timestamp, evidence: &Evidence) -> bool {
-        let place = self.steps.partition_point(|step| step.at <= at);
+        let later = self.steps.iter().rev().take_while(|step| step.at > at);
+        let place = self.steps.len() - later.count();
         if place == 0 {
             // Before it was first seen, or before what is remembered.
             return !self.is_old && self.begin_earlier(at, evidence);
@@ -278,6 +279,10 @@ impl Object {
     }
 
     fn step_before(&self, at: Timestamp) -> &Step {
+        // Nearly always it is the last.
+        if let Some(last) = self.steps.back().filter(|last| last.at <= at) {
+            return last;
+        }
         let place = self.steps.partition_point(|step| step.at <= at);
         // There is always one.
         &self.steps[place.saturating_sub(1)]

@@ -1,14 +1,14 @@
 //! Tracks: one identity for one object, through time and across cameras, while the vehicle moves.
 
 use super::{
-    association::{Candidates, by_image, expected, fix},
+    association::{Candidates, Outlook, by_image, fix, outlook},
     duplicates::Duplicates,
     filter::Fix,
     found::Found,
     heading::Look,
     object::{Evidence, Object, Sight},
     options::TrackingOptions,
-    view::{Expected, View},
+    view::View,
 };
 use crate::ground_memory::GroundMemory;
 use roadwatch_core::{
@@ -116,22 +116,17 @@ impl Tracker {
     }
 
     /// Who was to be seen and was not: nothing nearer hides it.
-    fn miss(
-        &mut self,
-        view: (CameraId, Timestamp),
-        expected: &[Option<Expected>],
-        found: &Found<'_>,
-    ) {
+    fn miss(&mut self, view: (CameraId, Timestamp), outlook: &[Outlook], found: &Found<'_>) {
         let (camera, at) = view;
         let last = self.last_frames.insert(camera, at);
         let interval = last.map_or(Duration::ZERO, |last| {
             at.saturating_since(last).min(MOST_INTERVAL)
         });
         for (index, object) in self.objects.iter_mut().enumerate() {
-            let Some(Some(expected)) = expected.get(index) else {
+            let Some(expected) = outlook.get(index).and_then(|one| one.expected) else {
                 continue;
             };
-            if expected.in_view && !found.is_hidden(expected, index) && object.seen_at < at {
+            if expected.in_view && !found.is_hidden(&expected, index) && object.seen_at < at {
                 object.missed += interval;
             }
         }
@@ -194,8 +189,8 @@ impl Reidentifier for Tracker {
             &self.objects
         };
         let view = View::new(camera, at, self.rig.camera(camera), ego);
-        let expected = expected(known_then, &view);
-        let taken = by_image(known_then, &expected, &seen.items);
+        let outlook = outlook(known_then, &view);
+        let taken = by_image(known_then, &outlook, &seen.items);
         let ground = self.ground.at(at);
         let known = |taken: Option<usize>| {
             let object = taken.map(|index| &self.objects[index]);
@@ -215,12 +210,12 @@ impl Reidentifier for Tracker {
         self.begin(at);
         let rig = Arc::clone(&self.rig);
         let view = View::new(camera, at, rig.camera(camera), ego);
-        let expected = expected(&self.objects, &view);
+        let outlook = outlook(&self.objects, &view);
         let fix = |one: &Oriented| fix(&one.located, &view, ego).unzip();
         let (fixes, heights_m): (Vec<_>, Vec<_>) = seen.items.iter().map(fix).unzip();
         let candidates = Candidates {
             objects: &self.objects,
-            expected: &expected,
+            outlook: &outlook,
             view: &view,
         };
         let taken = candidates.assign(&seen.items, &fixes);
@@ -236,7 +231,7 @@ impl Reidentifier for Tracker {
                 })
                 .collect(),
         };
-        self.miss((camera, at), &expected, &found);
+        self.miss((camera, at), &outlook, &found);
         let sights = seen.items.iter().zip(fixes.into_iter().zip(heights_m));
         let ids = self.take_in(&view, ego, sights, &taken);
         self.ground.forget(at);
