@@ -12,7 +12,8 @@ use std::{
     time::Duration,
 };
 
-/// Poses that are kept at most: a quarter of an hour at 100 Hz, 8 MB. Whoever asks for older ones gets the oldest.
+/// Poses that are kept at most of what is told live: a quarter of an hour at 100 Hz, 11 MB. Whoever asks for older ones
+/// gets the oldest.
 const MOST_POSES: usize = 90_000;
 /// Beyond the newest pose the vehicle is taken to go on as it did, for so long: odometry comes at 10 Hz or more, and
 /// what is older is no delay.
@@ -85,7 +86,7 @@ pub enum PoseRefused {
 pub struct EgoCounts {
     /// Taken.
     pub taken: u64,
-    /// Refused: not finite, or not later than the last.
+    /// Refused: not finite, not later than the last, or unreadable.
     pub refused: u64,
     /// Steps that nobody drives: a new origin. What was tracked stays where it is around the vehicle.
     pub jumps: u64,
@@ -109,6 +110,8 @@ pub struct EgoMotion {
 #[derive(Default)]
 struct Told {
     poses: VecDeque<Pose>,
+    /// All are kept, as of a recording.
+    whole: bool,
     counts: EgoCounts,
 }
 
@@ -137,6 +140,19 @@ impl EgoMotion {
         }
     }
 
+    /// Of a recording, which is told from its first pose to its last before anybody asks: all are kept.
+    #[must_use]
+    pub fn recorded() -> Self {
+        let told = Told {
+            whole: true,
+            ..Told::default()
+        };
+        Self {
+            told: Mutex::new(told),
+            ..Self::default()
+        }
+    }
+
     /// Says that what was told comes again after `lap`, as in a recording that is looped; the first word counts.
     pub fn repeat_every(&self, lap: Duration) {
         self.lap.get_or_init(|| lap);
@@ -149,6 +165,17 @@ impl EgoMotion {
     /// everything begins anew). It is counted.
     pub fn tell(&self, at: Timestamp, odom_from_base: Isometry3<f64>) -> Result<(), PoseRefused> {
         self.lock().take(at, odom_from_base)
+    }
+
+    /// Counts a pose as refused that never became one: a message that cannot be read.
+    pub fn refuse(&self) {
+        self.lock().counts.refused += 1;
+    }
+
+    /// The stamp of the newest pose; `None` before the first.
+    #[must_use]
+    pub fn newest(&self) -> Option<Timestamp> {
+        self.lock().poses.back().map(|pose| pose.at)
     }
 
     /// Where the vehicle is at a moment.
@@ -202,7 +229,7 @@ impl Told {
             odom_from_base,
         });
         self.counts.taken += 1;
-        if self.poses.len() > MOST_POSES {
+        if self.poses.len() > MOST_POSES && !self.whole {
             self.poses.pop_front();
         }
         Ok(())
@@ -379,6 +406,20 @@ mod tests {
         assert_eq!(late, Err(PoseRefused::NotLater));
         assert_eq!(motion.counts().refused, 2);
         assert_eq!(motion.counts().taken, 11);
+    }
+
+    #[test]
+    fn of_a_long_recording_the_first_pose_is_known_and_of_a_long_drive_the_newest() {
+        for (motion, first) in [
+            (EgoMotion::recorded(), 0.0),
+            (EgoMotion::default(), 1_000.0),
+        ] {
+            for step in 0..MOST_POSES as i64 + 1_000 {
+                let told = motion.tell(at(step * 100), pose(step as f64, 0.0));
+                told.expect("a pose");
+            }
+            assert_eq!(x(&motion, 0).0, first);
+        }
     }
 
     #[test]

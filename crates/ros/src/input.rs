@@ -1,11 +1,13 @@
 //! What others publish or recorded: images as a camera's frames, odometry and transforms as the vehicle's motion.
 
+mod bag_error;
 mod bag_file;
 mod bag_images;
 mod bag_messages;
 mod camera_info_check;
 mod ego;
 mod image_topic;
+mod one_publisher;
 mod transforms;
 
 use crate::msg::{
@@ -14,7 +16,8 @@ use crate::msg::{
 };
 use roadwatch_core::Timestamp;
 
-pub use bag_images::{BagImages, BagImagesError, BagSpan};
+pub use bag_error::BagImagesError;
+pub use bag_images::{BagImages, BagSpan};
 pub use ego::{EgoListener, EgoSource, tell_from_bag};
 pub use image_topic::{ImageTopic, ToImage, TopicCamera};
 

@@ -206,6 +206,7 @@ mod tests {
         geometry_msgs/TwistWithCovariance 49f574f033f095d8b6cd1beaca5ca7925e296e84af1716d16c89d38b059c8c18
         geometry_msgs/Vector3 cc12fe83e4c02719f1ce8070bfd14aecd40f75a96696a67a2a1f37f7dbb0765d
         lifecycle_msgs/TransitionEvent d5f8873a2f0146498f812d7885c7327ce27e463d36811d8792f35ee38c0d6c38
+        nav_msgs/Odometry 3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0
         rosgraph_msgs/Clock 692f7a66e93a3c83e71765d033b60349ba68023a8c689a79e48078bcb5c58564
         sensor_msgs/CameraInfo b3dfd68ff46c9d56c80fd3bd4ed22c7a4ddce8c8348f2f59c299e73118e7e275
         sensor_msgs/CompressedImage 15640771531571185e2efc8a100baf923961a4d15d5569652e6cb6691e8e371a

@@ -29,5 +29,18 @@ pub fn run(args: &ConfigArgs) -> Result<(), Failure> {
         cameras.len(),
         cameras.join(", ")
     );
+    say!("{}", where_the_vehicle_is(&session));
     Ok(())
+}
+
+fn where_the_vehicle_is(session: &Session) -> String {
+    let (ego, taken) = (&session.config.ego, session.ego.counts().taken);
+    match ego.told_by(taken > 0) {
+        None => "where the vehicle is: nobody tells it, so it counts as standing".to_owned(),
+        Some(by) if ego.is_live() => {
+            format!("where the vehicle is: {by}, which only `run` listens to")
+        }
+        Some(by) if taken == 0 => format!("where the vehicle is: {by}"),
+        Some(by) => format!("where the vehicle is: {by}, {taken} poses"),
+    }
 }

@@ -1,7 +1,7 @@
 //! `[ego]`: who tells where the vehicle itself is.
 
 use super::reader::Reader;
-use std::path::PathBuf;
+use std::{fmt, path::PathBuf};
 
 /// Who tells where the vehicle is.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -29,15 +29,27 @@ pub enum EgoTopic {
     Tf(String),
 }
 
-impl EgoConfig {
-    /// Who tells where the vehicle is, in a word or two; a dataset only where it `knows`.
-    #[must_use]
-    pub fn told_by(&self, knows: bool) -> Option<&'static str> {
+impl fmt::Display for EgoTopic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Dataset => knows.then_some("the dataset"),
-            Self::Still => Some("the configuration"),
-            Self::Ros { bag: Some(_), .. } => Some("the bag"),
-            Self::Ros { bag: None, .. } => Some("the topic"),
+            Self::Odometry(name) => write!(f, "the topic {name}"),
+            Self::Tf(odom_frame) => write!(f, "the topic /tf, in the frame {odom_frame}"),
+        }
+    }
+}
+
+impl EgoConfig {
+    /// Who tells where the vehicle is, in a few words; a dataset only where it `knows`.
+    #[must_use]
+    pub fn told_by(&self, knows: bool) -> Option<String> {
+        match self {
+            Self::Dataset => knows.then(|| "the dataset".to_owned()),
+            Self::Still => Some("the configuration, which says that it is still".to_owned()),
+            Self::Ros {
+                bag: Some(bag),
+                topic,
+            } => Some(format!("{topic} in {}", bag.display())),
+            Self::Ros { bag: None, topic } => Some(topic.to_string()),
         }
     }
 
@@ -58,6 +70,18 @@ pub(super) fn read(ego: &Reader<'_, '_>) -> EgoConfig {
         ego.note(
             if tf.is_some() { "tf_frame" } else { "odometry" },
             "only one can tell where the vehicle is: keep one of `still`, `odometry` and `tf_frame`",
+        );
+    }
+    if odometry.is_some_and(str::is_empty) {
+        ego.note("odometry", "empty: expected the name of a topic");
+    }
+    let is_frame = |name: &str| {
+        !name.is_empty() && !name.starts_with('/') && !name.contains(char::is_whitespace)
+    };
+    if tf.is_some_and(|frame| !is_frame(frame)) {
+        ego.note(
+            "tf_frame",
+            "cannot name a tf frame: it must not be empty, begin with a slash or hold blanks",
         );
     }
     let topic = match (odometry, tf) {

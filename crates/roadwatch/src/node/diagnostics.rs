@@ -1,10 +1,12 @@
 //! `/diagnostics`: how every camera, stage and sink is, once a second.
 
 mod camera_period;
+mod ego_watch;
 
 use crate::{config::DiagnosticLimits, session::Session, switches::Switches};
 use camera_period::CameraPeriod;
-use roadwatch_core::{CameraId, EgoMotion, Rig, Timestamp, ego::EgoCounts};
+use ego_watch::EgoWatch;
+use roadwatch_core::{CameraId, Rig, Timestamp};
 use roadwatch_pipeline::{CameraCounts, Edge, Metrics, Percentiles, SinkCounts};
 use roadwatch_ros::{
     Outlet, RosError, RosNode,
@@ -32,12 +34,7 @@ pub(super) struct Diagnostics {
     limits: DiagnosticLimits,
     /// What the detector is, as far as it never changes.
     detector: Vec<KeyValue>,
-    ego: Arc<EgoMotion>,
-    ego_before: EgoCounts,
-    /// Who tells where the vehicle is; `None` when nobody does.
-    ego_told_by: Option<&'static str>,
-    /// Whether that is a topic, which may fall silent.
-    is_live: bool,
+    ego: EgoWatch,
     before: Option<Look>,
     cameras: Vec<Watched>,
 }
@@ -79,10 +76,7 @@ impl Diagnostics {
                 pair("model", model),
                 pair("provider", session.controls.detector.provider()),
             ],
-            ego: Arc::clone(&session.ego),
-            ego_before: EgoCounts::default(),
-            ego_told_by: config.ego.told_by(session.ego.counts().taken > 0),
-            is_live: config.ego.is_live(),
+            ego: EgoWatch::of(session),
             before: None,
             cameras: vec![
                 Watched {
@@ -106,7 +100,8 @@ impl Diagnostics {
         let gone = self.hear(&look);
         let mut status: Vec<_> = self.rig.ids().map(|id| self.camera(id, &look)).collect();
         status.push(self.stages(metrics));
-        status.push(self.ego_motion());
+        let (level, message, values) = self.ego.look(stamp);
+        status.push(self.status("ego motion", level, message, values));
         let names = metrics.sink_names().enumerate();
         status.extend(names.map(|(at, name)| self.sink(name, at, &look, metrics)));
         self.send(status, stamp);
@@ -197,32 +192,6 @@ impl Diagnostics {
             )
         };
         self.status("pipeline", level, message, values)
-    }
-
-    /// Whether it is known where the vehicle is; told once a second, so that odometry that stops is noticed.
-    fn ego_motion(&mut self) -> DiagnosticStatus {
-        let now = self.ego.counts();
-        let before = std::mem::replace(&mut self.ego_before, now);
-        let quiet = now.taken == before.taken;
-        let (level, message) = match self.ego_told_by {
-            None => (DiagnosticStatus::OK, "nobody tells it".to_owned()),
-            Some(by) if self.is_live && quiet => {
-                let message = format!("{by} says nothing");
-                (DiagnosticStatus::WARN, message)
-            }
-            Some(by) if now.refused + now.jumps > before.refused + before.jumps => {
-                let message = format!("{by} tells what cannot be");
-                (DiagnosticStatus::WARN, message)
-            }
-            Some(by) => (DiagnosticStatus::OK, format!("told by {by}")),
-        };
-        let values = vec![
-            pair("taken", now.taken),
-            pair("refused", now.refused),
-            pair("jumps", now.jumps),
-            pair("restarts", now.restarts),
-        ];
-        self.status("ego motion", level, message, values)
     }
 
     fn sink(&self, name: &str, at: usize, look: &Look, metrics: &Metrics) -> DiagnosticStatus {

@@ -2,6 +2,7 @@
 
 use super::{
     ImageMessage,
+    bag_error::{BagImagesError, COMPRESSED, RAW},
     bag_file::{TopicReader, summary},
     stands_still,
 };
@@ -17,85 +18,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-const RAW: &str = "sensor_msgs/msg/Image";
-const COMPRESSED: &str = "sensor_msgs/msg/CompressedImage";
 const EXTENSION: &str = "mcap";
-
-/// A bag that gives no images.
-#[derive(Debug, thiserror::Error)]
-pub enum BagImagesError {
-    /// Neither a file nor a folder with files.
-    #[error("`{}` is no bag: expected an .mcap file, or a folder with some", .0.display())]
-    NoBag(PathBuf),
-    /// The folder cannot be read.
-    #[error("`{}` cannot be read", path.display())]
-    Unreadable {
-        /// The folder.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// The file is damaged.
-    #[error("`{}` cannot be read as MCAP", path.display())]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        source: McapError,
-    },
-    /// The recording was not finished.
-    #[error("`{}` has no index: it was not finished; `mcap recover` makes one", .0.display())]
-    NotFinished(PathBuf),
-    /// No such topic.
-    #[error("`{}` has no images on `{topic}`; its image topics: {}", path.display(), listed(topics))]
-    NoTopic {
-        /// The bag.
-        path: PathBuf,
-        /// What was asked for.
-        topic: String,
-        /// What there is.
-        topics: BTreeSet<String>,
-    },
-    /// No such topic of any kind.
-    #[error("`{}` has no `{topic}`; it has {}", path.display(), listed(topics))]
-    NoSuch {
-        /// The bag.
-        path: PathBuf,
-        /// What was asked for.
-        topic: String,
-        /// What there is.
-        topics: BTreeSet<String>,
-    },
-    /// The topic carries something else than was asked for.
-    #[error("`{topic}` of `{}` is {found}, not {expected}", path.display())]
-    NotThat {
-        /// The bag.
-        path: PathBuf,
-        /// The topic.
-        topic: String,
-        /// What it carries.
-        found: String,
-        /// What was asked for.
-        expected: String,
-    },
-    /// The topic carries something else.
-    #[error("`{topic}` of `{}` is {found}, not {RAW} or {COMPRESSED}", path.display())]
-    OtherType {
-        /// The bag.
-        path: PathBuf,
-        /// The topic.
-        topic: String,
-        /// What it carries.
-        found: String,
-    },
-}
-
-fn listed(topics: &BTreeSet<String>) -> String {
-    match topics.is_empty() {
-        true => "none".to_owned(),
-        false => topics.iter().cloned().collect::<Vec<_>>().join(", "),
-    }
-}
 
 /// What a bag's images cover in time, by their stamps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

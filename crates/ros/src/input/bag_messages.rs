@@ -1,8 +1,9 @@
 //! The messages of one topic of a recorded bag, all at once.
 
 use super::{
+    bag_error::BagImagesError,
     bag_file::TopicReader,
-    bag_images::{BagImagesError, OneFile, files, type_of},
+    bag_images::{OneFile, files, type_of},
 };
 use mcap::sans_io::indexed_reader::ReadOrder;
 use std::{collections::BTreeSet, path::Path};

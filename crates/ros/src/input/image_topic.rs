@@ -1,6 +1,9 @@
 //! An image topic as a camera.
 
-use super::{COMPRESSED, ImageMessage, camera_info_check::contradiction, stands_still};
+use super::{
+    COMPRESSED, ImageMessage, camera_info_check::contradiction, one_publisher::OnePublisher,
+    stands_still,
+};
 use crate::{
     msg::sensor_msgs::{CameraInfo, CompressedImage, Image},
     node::{RosError, RosNode},
@@ -10,7 +13,7 @@ use roadwatch_core::{
     Timestamp,
 };
 use ros2_client::{
-    Gid, MessageInfo, QosProfile, Subscription,
+    MessageInfo, QosProfile, Subscription,
     qos::{Durability, History},
 };
 use rustdds::mio1::{Events, Interest, Poll, Token};
@@ -24,8 +27,6 @@ use std::{
 const DEPTH: usize = 2;
 /// A stamp that jumps back by more is a recording that begins anew, or a clock that was set; less is disorder.
 const NEW_BEGINNING: Duration = Duration::from_secs(1);
-/// Another publisher is listened to when the first has been silent for so long.
-const SILENCE: Duration = Duration::from_secs(2);
 
 /// Turns what came into an image that is decoded when somebody looks.
 pub type ToImage = Box<dyn Fn(ImageMessage) -> Result<FrameImage, DecodeError> + Send>;
@@ -59,7 +60,7 @@ pub struct ImageTopic {
     poll: Poll,
     events: Events,
     last_stamp: Option<Timestamp>,
-    publisher: Option<(Gid, Instant)>,
+    publisher: OnePublisher,
     seq: u64,
 }
 
@@ -97,7 +98,7 @@ impl ImageTopic {
             poll,
             events: Events::with_capacity(4),
             last_stamp: None,
-            publisher: None,
+            publisher: OnePublisher::default(),
             seq: 0,
             what,
         })
@@ -120,7 +121,13 @@ impl ImageTopic {
 
     fn frame(&mut self, message: ImageMessage, info: &MessageInfo) -> Result<Frame, String> {
         let received_at = Instant::now();
-        self.check_publisher(info.publisher_gid(), received_at)?;
+        // One publisher is the camera. Another one's images would be places where nobody is.
+        if !self.publisher.admits(info.publisher_gid(), received_at) {
+            let topic = &self.what.images;
+            return Err(format!(
+                "two publishers on {topic}: the images of the second are not looked at"
+            ));
+        }
         self.look_at_info();
         if let Some(contradiction) = &self.contradiction {
             return Err(contradiction.clone());
@@ -137,20 +144,6 @@ impl ImageTopic {
             received_at,
             image,
         })
-    }
-
-    /// One publisher is the camera. Another one's images would be places where nobody is.
-    fn check_publisher(&mut self, gid: Gid, now: Instant) -> Result<(), String> {
-        match self.publisher {
-            Some((known, heard)) if known != gid && now - heard < SILENCE => Err(format!(
-                "two publishers on {}: the images of the second are not looked at",
-                self.what.images
-            )),
-            _ => {
-                self.publisher = Some((gid, now));
-                Ok(())
-            }
-        }
     }
 
     fn check_stamp(&mut self, stamp: Timestamp) -> Result<(), String> {

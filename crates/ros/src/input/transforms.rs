@@ -1,113 +1,222 @@
-//! The newest transforms between frames, and what they say together.
+//! Transforms between frames through time, and where a chain of them puts one frame in another.
 
-use crate::msg::{geometry_msgs::TransformStamped, tf2_msgs::TFMessage};
-use nalgebra::Isometry3;
+use crate::msg::geometry_msgs::TransformStamped;
+use nalgebra::{Isometry3, UnitQuaternion};
 use roadwatch_core::Timestamp;
-use std::collections::BTreeMap;
+use std::{
+    collections::{BTreeMap, BTreeSet, VecDeque},
+    time::Duration,
+};
 
 /// Longer chains of frames are circles.
 const LONGEST_CHAIN: usize = 32;
-/// Transforms of one child by two parents, or of one stamp and two values, are said at most so often.
-const COMPLAINTS: u32 = 3;
+/// Frames that are remembered at most: a vehicle has some hundred.
+const MOST_FRAMES: usize = 10_000;
+/// Steps of a moving frame that are kept: the pieces of a chain come at their own pace, some a second ahead.
+const MOST_STEPS: usize = 256;
+/// A stamp that jumps back by more is a recording that begins anew; less came late.
+const BEGINS_ANEW: Duration = Duration::from_secs(1);
+/// Places that differ by less, metres or radians, are one place that two publishers rounded.
+const SAME: f64 = 1e-3;
+
+/// How a frame moves in its parent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Moves {
+    /// Told once, for all time: `/tf_static`.
+    Never,
+    /// Told again and again: `/tf`.
+    Always,
+}
+
+/// What cannot be of a transform; said once of each frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Oddity {
+    TwoPlaces,
+    Late,
+    NoTransform,
+}
+
+impl Oddity {
+    const fn as_str(self) -> &'static str {
+        match self {
+            Self::TwoPlaces => {
+                "a frame is told to be in two places at once, by two publishers or with a stamp that stands still: the \
+                 last one counts"
+            }
+            Self::Late => "a transform comes later than a newer one: it is left out",
+            Self::NoTransform => "a transform is not finite, or no rotation: it is left out",
+        }
+    }
+}
 
 /// Frames with their parents.
 #[derive(Debug, Default)]
 pub(super) struct Transforms {
-    parents: BTreeMap<String, Edge>,
-    complaints: u32,
+    frames: BTreeMap<String, Edge>,
+    said: BTreeSet<(String, Oddity)>,
 }
 
+/// From a frame to its parent.
 #[derive(Debug)]
 struct Edge {
     parent: String,
+    moves: Moves,
+    newest: Step,
+    /// Older ones, oldest first; none of a frame that never moves.
+    older: VecDeque<Step>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Step {
     at: Timestamp,
-    from_child: Isometry3<f64>,
+    parent_from_child: Isometry3<f64>,
 }
 
 impl Transforms {
-    /// Takes a message in. Gives the newest stamp of what it moved; `None` of a static one.
-    pub(super) fn take(&mut self, message: &TFMessage, is_static: bool) -> Option<Timestamp> {
-        let mut newest = None;
-        for transform in &message.transforms {
-            self.take_one(transform);
-            newest = newest.max(Some(transform.header.stamp.into()));
-        }
-        newest.filter(|_| !is_static)
-    }
-
-    fn take_one(&mut self, transform: &TransformStamped) {
-        let name = |text: &str| text.trim_start_matches('/').to_owned();
-        let child = name(&transform.child_frame_id);
-        let edge = Edge {
-            parent: name(&transform.header.frame_id),
-            at: transform.header.stamp.into(),
-            from_child: (&transform.transform).into(),
+    /// Takes one transform in.
+    pub(super) fn take(&mut self, transform: &TransformStamped, moves: Moves) {
+        let child = bare(&transform.child_frame_id);
+        let parent = bare(&transform.header.frame_id);
+        let Some(parent_from_child) = rigid((&transform.transform).into()) else {
+            self.say(child, parent, Oddity::NoTransform);
+            return;
         };
-        if let Some(before) = self.parents.get(&child) {
-            let twice = before.parent != edge.parent
-                || before.at == edge.at && before.from_child != edge.from_child;
-            if twice && self.complaints < COMPLAINTS {
-                self.complaints += 1;
-                tracing::warn!(
-                    frame = %child, parent = %edge.parent, other_parent = %before.parent,
-                    "two publishers say where a frame is: the last one counts"
-                );
+        let step = Step {
+            at: transform.header.stamp.into(),
+            parent_from_child,
+        };
+        let has_room = self.frames.len() < MOST_FRAMES;
+        let odd = match self.frames.get_mut(child) {
+            Some(edge) if edge.parent == parent && edge.moves == moves => edge.follow(step),
+            Some(edge) => {
+                *edge = Edge::new(parent, moves, step);
+                Some(Oddity::TwoPlaces)
             }
+            None if has_room => {
+                let edge = Edge::new(parent, moves, step);
+                self.frames.insert(child.to_owned(), edge);
+                None
+            }
+            None => None,
+        };
+        if let Some(odd) = odd {
+            self.say(child, parent, odd);
         }
-        self.parents.insert(child, edge);
     }
 
-    /// Where a frame is in another; `None` while no chain of transforms leads there.
-    pub(super) fn pose(&self, of: &str, in_it: &str) -> Option<Isometry3<f64>> {
-        let (mut frame, mut pose) = (in_it, Isometry3::identity());
-        for _ in 0..LONGEST_CHAIN {
-            if frame == of {
-                return Some(pose);
-            }
-            let edge = self.parents.get(frame)?;
-            pose = edge.from_child * pose;
-            frame = &edge.parent;
+    /// Where `child` is in `of`, at the newest moment of which all moving pieces of the chain tell; `None` while no
+    /// chain leads there, or nothing in it moves.
+    pub(super) fn pose(&self, of: &str, child: &str) -> Option<(Timestamp, Isometry3<f64>)> {
+        let chain = self.chain(of, child)?;
+        let moving = chain.iter().filter(|edge| edge.moves == Moves::Always);
+        let at = moving.map(|edge| edge.newest.at).min()?;
+        let mut pose = Isometry3::identity();
+        for edge in chain {
+            pose = edge.at(at)? * pose;
         }
+        Some((at, pose))
+    }
+
+    /// The frames that are known, each with its parent: `odom -> base_link`.
+    pub(super) fn known(&self) -> impl Iterator<Item = String> {
+        let edges = self.frames.iter();
+        edges.map(|(child, edge)| format!("{} -> {child}", edge.parent))
+    }
+
+    /// The edges from `child` up to `of`.
+    fn chain(&self, of: &str, child: &str) -> Option<Vec<&Edge>> {
+        let (mut frame, mut chain) = (child, Vec::new());
+        while frame != of {
+            if chain.len() == LONGEST_CHAIN {
+                return None;
+            }
+            let edge = self.frames.get(frame)?;
+            frame = &edge.parent;
+            chain.push(edge);
+        }
+        Some(chain)
+    }
+
+    fn say(&mut self, frame: &str, parent: &str, odd: Oddity) {
+        if self.said.len() < MOST_FRAMES && self.said.insert((frame.to_owned(), odd)) {
+            tracing::warn!(%frame, %parent, "{}", odd.as_str());
+        }
+    }
+}
+
+impl Edge {
+    fn new(parent: &str, moves: Moves, newest: Step) -> Self {
+        Self {
+            parent: parent.to_owned(),
+            moves,
+            newest,
+            older: VecDeque::new(),
+        }
+    }
+
+    /// Takes the next step in, and says what is odd about it.
+    fn follow(&mut self, step: Step) -> Option<Oddity> {
+        let before = self.newest;
+        let differs = differ(&before.parent_from_child, &step.parent_from_child);
+        if self.moves == Moves::Never || step.at == before.at {
+            self.newest = step;
+            return differs.then_some(Oddity::TwoPlaces);
+        }
+        if step.at < before.at {
+            if before.at.saturating_since(step.at) <= BEGINS_ANEW {
+                return Some(Oddity::Late);
+            }
+            self.older.clear();
+        } else {
+            self.older.push_back(before);
+            if self.older.len() >= MOST_STEPS {
+                self.older.pop_front();
+            }
+        }
+        self.newest = step;
         None
     }
+
+    /// Where it was at a moment, not after its newest step; `None` before its first.
+    fn at(&self, at: Timestamp) -> Option<Isometry3<f64>> {
+        if self.moves == Moves::Never || at >= self.newest.at {
+            return Some(self.newest.parent_from_child);
+        }
+        let later = self.older.partition_point(|step| step.at <= at);
+        let from = self.older.get(later.checked_sub(1)?)?;
+        let to = self.older.get(later).unwrap_or(&self.newest);
+        let share = at.saturating_since(from.at).as_secs_f64()
+            / to.at.saturating_since(from.at).as_secs_f64();
+        let (from, to) = (&from.parent_from_child, &to.parent_from_child);
+        // Half a turn between two steps is not interpolated.
+        Some(
+            from.try_lerp_slerp(to, share, f64::EPSILON)
+                .unwrap_or(*from),
+        )
+    }
+}
+
+/// A frame's name; ROS 1 led them with a slash.
+pub(super) fn bare(name: &str) -> &str {
+    name.trim_start_matches('/')
+}
+
+/// With a rotation of exactly one; `None` where it is none.
+fn rigid(transform: Isometry3<f64>) -> Option<Isometry3<f64>> {
+    let rotation = UnitQuaternion::try_new(transform.rotation.into_inner(), f64::EPSILON)?;
+    let mut numbers = transform
+        .translation
+        .vector
+        .iter()
+        .chain(rotation.coords.iter());
+    let is_finite = numbers.all(|one| one.is_finite());
+    is_finite.then_some(Isometry3::from_parts(transform.translation, rotation))
+}
+
+fn differ(one: &Isometry3<f64>, other: &Isometry3<f64>) -> bool {
+    let off = one.inverse() * other;
+    off.translation.vector.norm() > SAME || off.rotation.angle() > SAME
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::msg::{geometry_msgs::Transform, std_msgs::Header};
-    use nalgebra::Vector3;
-
-    fn message(parent: &str, child: &str, nanos: i64, x: f64, yaw_rad: f64) -> TFMessage {
-        let pose = Isometry3::new(Vector3::new(x, 0.0, 0.0), Vector3::z() * yaw_rad);
-        TFMessage {
-            transforms: vec![TransformStamped {
-                header: Header::new(Timestamp::from_nanos(nanos), parent),
-                child_frame_id: child.to_owned(),
-                transform: Transform::from(&pose),
-            }],
-        }
-    }
-
-    #[test]
-    fn a_pose_follows_from_a_chain_of_moving_and_static_transforms() {
-        let mut transforms = Transforms::default();
-        let fixed = message("base_footprint", "base_link", 0, 1.0, 0.0);
-        assert_eq!(transforms.take(&fixed, true), None);
-        assert_eq!(transforms.pose("odom", "base_link"), None);
-        let quarter = std::f64::consts::FRAC_PI_2;
-        let moved = transforms.take(&message("/odom", "base_footprint", 7, 5.0, quarter), false);
-        assert_eq!(moved, Some(Timestamp::from_nanos(7)));
-        let pose = transforms.pose("odom", "base_link").expect("a chain");
-        let off = pose.translation.vector - Vector3::new(5.0, 1.0, 0.0);
-        assert!(off.norm() < 1e-9, "{pose}");
-    }
-
-    #[test]
-    fn frames_in_a_circle_lead_nowhere() {
-        let mut transforms = Transforms::default();
-        transforms.take(&message("a", "b", 0, 1.0, 0.0), false);
-        transforms.take(&message("b", "a", 0, 1.0, 0.0), false);
-        assert_eq!(transforms.pose("odom", "a"), None);
-    }
-}
+mod tests;
