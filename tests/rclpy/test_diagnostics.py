@@ -51,7 +51,7 @@ def test_they_come_once_a_second(seconds):
 def test_everything_has_a_status(seconds):
     names = set(seconds[-1].by_name)
     assert {f"roadwatch: camera {camera}" for camera in CAMERAS} <= names
-    assert {"roadwatch: pipeline", "roadwatch: sink ros2"} <= names
+    assert {"roadwatch: pipeline", "roadwatch: ego motion", "roadwatch: sink ros2"} <= names
     statuses = seconds[-1].by_name
     assert all(status.message for status in statuses.values())
     assert statuses["roadwatch: camera front"].hardware_id == "front"

@@ -57,10 +57,6 @@ const ON_THE_SPOT_TURN_STD: f64 = 0.7;
 /// Share of a fix's variance that counts as its noise. Less is new in every frame, about a tenth, but what is not changes within
 /// a second as the object moves, and a filter that took it for motion would follow it.
 const COUNTED_SHARE: f64 = 0.5;
-/// Share of a fix's variance that is the same from frame to frame: the object's size, the ground under it, what hides it.
-/// No number of frames averages it out (measured on labelled drives: the autocorrelation of errors of standing objects
-/// stays above it for two seconds), so it is not the filter's, and is added to what is published.
-const LASTING_SHARE: f64 = 0.85;
 /// What lasts changes by about this share of its deviation in a second, while the object is seen from elsewhere: as an
 /// apparent speed.
 const DRIFT_PER_S: f64 = 0.4;
@@ -95,7 +91,9 @@ pub(super) struct Filter {
     pub(super) heading_known: bool,
     /// Log-odds that front is front, by what was seen of it.
     pub(super) front: f64,
-    /// Covariance of what the last fixes have in common, which the state's does not hold.
+    /// Covariance of what the last fixes have in common: the object's size, the ground under it, what hides it. No number of
+    /// frames averages it out (on labelled drives the autocorrelation of errors of standing objects stays above 0.7 for two
+    /// seconds), so the state's does not hold it, and it is added to what is published.
     lasting: Matrix2<f64>,
     /// Fixes in a row that surprised.
     surprises: u32,
@@ -143,7 +141,7 @@ impl Filter {
             heading_known: false,
             front: 0.0,
             surprises: 0,
-            lasting: fix.covariance * LASTING_SHARE,
+            lasting: fix.covariance,
         }
     }
 
@@ -247,7 +245,7 @@ impl Filter {
         let gain = spread * inverse;
         self.mean += gain * innovation;
         self.covariance -= gain * spread.transpose();
-        let lasting = fix.covariance * LASTING_SHARE;
+        let lasting = fix.covariance;
         let kept = match lasting.trace() > self.lasting.trace() {
             true => BETTER_KNOWN_KEPT,
             false => WORSE_KNOWN_KEPT,

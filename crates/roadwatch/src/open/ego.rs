@@ -10,7 +10,9 @@ pub fn ego(config: &Config, notes: &mut Notes) -> Arc<EgoMotion> {
     let base_frame = &config.node.options.surface.base_frame;
     if matches!(&config.ego, EgoConfig::Ros { topic: EgoTopic::Tf(frame), .. } if frame == base_frame)
     {
-        let what = format!("`{base_frame}` is the vehicle itself: expected a frame that is fixed to the ground");
+        let what = format!(
+            "`{base_frame}` is the vehicle itself: expected a frame that is fixed to the ground"
+        );
         notes.note("ego.tf_frame", what);
     }
     Arc::new(match &config.ego {
