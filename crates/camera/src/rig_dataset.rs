@@ -16,7 +16,7 @@ use crate::{
     video_file::VideoFile,
 };
 use nalgebra::Isometry3;
-use roadwatch_core::{RigCamera, Timestamp};
+use roadwatch_core::{EgoMotion, RigCamera, Timestamp};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -160,10 +160,16 @@ impl RigDataset {
         &self.frames
     }
 
-    /// Where the vehicle was, moment by moment; nothing where the recording does not know.
-    pub fn ego_poses(&self) -> impl Iterator<Item = (Timestamp, Isometry3<f64>)> {
-        let frames = self.frames.iter();
-        frames.filter_map(|frame| Some((frame.ego_at, frame.world_from_base?)))
+    /// Where the vehicle was, as far as the recording knows. What cannot be is counted by the motion itself.
+    #[must_use]
+    pub fn ego_motion(&self) -> EgoMotion {
+        let motion = EgoMotion::recorded();
+        for frame in &self.frames {
+            if let Some(world_from_base) = frame.world_from_base {
+                motion.tell(frame.ego_at, world_from_base).ok();
+            }
+        }
+        motion
     }
 
     /// What the camera at `index` of [`RigDataset::cameras`] saw; `None` when there is no such camera.

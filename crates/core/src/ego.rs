@@ -1,7 +1,7 @@
 //! Where the vehicle itself is, through time: told by whoever knows, asked for at the moments of captures.
 
 use crate::{
-    space::{BaseLink, Odom, Transform},
+    space::{BaseLink, Odom, Steady, Transform},
     time::Timestamp,
 };
 use nalgebra::{Isometry3, UnitQuaternion};
@@ -55,8 +55,10 @@ impl EgoKnowledge {
 /// Where the vehicle is at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ego {
-    /// The vehicle's pose; without odometry, the identity.
+    /// The vehicle's pose as it is told; without odometry, the identity.
     pub odom_from_base: Transform<Odom, BaseLink>,
+    /// The same without jumps.
+    pub steady_from_base: Transform<Steady, BaseLink>,
     /// How it is known.
     pub knowledge: EgoKnowledge,
 }
@@ -65,6 +67,7 @@ impl Default for Ego {
     fn default() -> Self {
         Self {
             odom_from_base: Transform::new(Isometry3::identity()),
+            steady_from_base: Transform::new(Isometry3::identity()),
             knowledge: EgoKnowledge::None,
         }
     }
@@ -96,8 +99,8 @@ pub struct EgoCounts {
 
 /// The vehicle's poses through time. Told by one, asked by another, from any thread.
 ///
-/// Between poses it is interpolated; the poses that come back are continuous: when what is told jumps, the vehicle is
-/// taken to have gone on as it did, and everything later is seen from there.
+/// Between poses it is interpolated. In [`Steady`] the vehicle never jumps: when what is told does, it is taken to have gone on
+/// as it did; when it is first told, or told anew from the begin of a recording, it is where it was.
 #[derive(Default)]
 pub struct EgoMotion {
     /// It never moves, and nobody need say so.
@@ -118,10 +121,8 @@ struct Told {
 #[derive(Clone, Copy)]
 struct Pose {
     at: Timestamp,
-    /// As told.
-    told: Isometry3<f64>,
-    /// Continuous.
     odom_from_base: Isometry3<f64>,
+    steady_from_base: Isometry3<f64>,
 }
 
 impl fmt::Debug for EgoMotion {
@@ -203,30 +204,28 @@ impl EgoMotion {
 
 impl Told {
     fn take(&mut self, at: Timestamp, told: Isometry3<f64>) -> Result<(), PoseRefused> {
-        let told = match normalised(told) {
-            Some(told) => told,
-            None => {
-                self.counts.refused += 1;
-                return Err(PoseRefused::NotFinite);
-            }
+        let Some(odom_from_base) = normalised(told) else {
+            self.counts.refused += 1;
+            return Err(PoseRefused::NotFinite);
         };
-        let newest = self.poses.back().copied();
-        if let Some(newest) = newest.filter(|newest| at <= newest.at) {
-            if newest.at.saturating_since(at) <= BEGINS_ANEW {
+        let last = self.poses.back().copied();
+        let steady_from_base = match last {
+            None => Isometry3::identity(),
+            Some(last) if at > last.at => self.continued(&last, at, &odom_from_base),
+            Some(last) if last.at.saturating_since(at) <= BEGINS_ANEW => {
                 self.counts.refused += 1;
                 return Err(PoseRefused::NotLater);
             }
-            self.poses.clear();
-            self.counts.restarts += 1;
-        }
-        let odom_from_base = match self.poses.back().copied() {
-            None => told,
-            Some(last) => self.continued(&last, at, &told),
+            Some(last) => {
+                self.poses.clear();
+                self.counts.restarts += 1;
+                last.steady_from_base
+            }
         };
         self.poses.push_back(Pose {
             at,
-            told,
             odom_from_base,
+            steady_from_base,
         });
         self.counts.taken += 1;
         if self.poses.len() > MOST_POSES && !self.whole {
@@ -236,16 +235,22 @@ impl Told {
     }
 
     /// The next pose without a jump.
-    fn continued(&mut self, last: &Pose, at: Timestamp, told: &Isometry3<f64>) -> Isometry3<f64> {
-        let step = last.told.inverse() * told;
+    fn continued(
+        &mut self,
+        last: &Pose,
+        at: Timestamp,
+        odom_from_base: &Isometry3<f64>,
+    ) -> Isometry3<f64> {
+        let step = last.odom_from_base.inverse() * odom_from_base;
         let seconds = at.saturating_since(last.at).as_secs_f64();
         let jumps = step.translation.vector.norm() > MOST_SPEED_M_S * seconds
             || step.rotation.angle() > MOST_TURN_RAD_S * seconds;
         if jumps {
             self.counts.jumps += 1;
-            return last.odom_from_base * self.going_on(at.saturating_since(last.at).min(GOES_ON));
+            return last.steady_from_base
+                * self.going_on(at.saturating_since(last.at).min(GOES_ON));
         }
-        last.odom_from_base * step
+        last.steady_from_base * step
     }
 
     /// The motion of the last step, carried on for some time.
@@ -257,7 +262,7 @@ impl Told {
         ) else {
             return Isometry3::identity();
         };
-        let step = before.odom_from_base.inverse() * last.odom_from_base;
+        let step = before.steady_from_base.inverse() * last.steady_from_base;
         let seconds = last.at.saturating_since(before.at).as_secs_f64();
         let share = time.as_secs_f64() / seconds.max(f64::EPSILON);
         Isometry3::from_parts(
@@ -280,23 +285,19 @@ impl Told {
     }
 
     fn at(&self, at: Timestamp) -> Ego {
-        let known = |isometry, knowledge| Ego {
-            odom_from_base: Transform::new(isometry),
-            knowledge,
-        };
         let later = self.poses.partition_point(|pose| pose.at < at);
         let before = later.checked_sub(1).and_then(|at| self.poses.get(at));
         match (before, self.poses.get(later)) {
             (None, None) => Ego::default(),
-            (_, Some(next)) if next.at == at => known(next.odom_from_base, EgoKnowledge::Measured),
-            (None, Some(first)) => known(first.odom_from_base, EgoKnowledge::Stale),
+            (_, Some(next)) if next.at == at => {
+                next.seen_from(next.steady_from_base, EgoKnowledge::Measured)
+            }
+            (None, Some(first)) => first.seen_from(first.steady_from_base, EgoKnowledge::Stale),
             (Some(before), Some(next)) => {
                 let share = at.saturating_since(before.at).as_secs_f64()
                     / next.at.saturating_since(before.at).as_secs_f64();
-                known(
-                    between(&before.odom_from_base, &next.odom_from_base, share),
-                    EgoKnowledge::Measured,
-                )
+                let steady = between(&before.steady_from_base, &next.steady_from_base, share);
+                next.seen_from(steady, EgoKnowledge::Measured)
             }
             (Some(last), None) => {
                 let beyond = at.saturating_since(last.at);
@@ -304,11 +305,21 @@ impl Told {
                     true => EgoKnowledge::Extrapolated,
                     false => EgoKnowledge::Stale,
                 };
-                known(
-                    last.odom_from_base * self.going_on(beyond.min(GOES_ON)),
-                    knowledge,
-                )
+                let steady = last.steady_from_base * self.going_on(beyond.min(GOES_ON));
+                last.seen_from(steady, knowledge)
             }
+        }
+    }
+}
+
+impl Pose {
+    /// The vehicle at a pose of the steady frame, by where odom is at this one.
+    fn seen_from(&self, steady_from_base: Isometry3<f64>, knowledge: EgoKnowledge) -> Ego {
+        let moved = self.steady_from_base.inverse() * steady_from_base;
+        Ego {
+            odom_from_base: Transform::new(self.odom_from_base * moved),
+            steady_from_base: Transform::new(steady_from_base),
+            knowledge,
         }
     }
 }
@@ -360,6 +371,15 @@ mod tests {
     }
 
     #[test]
+    fn the_first_word_moves_nobody() {
+        let motion = EgoMotion::default();
+        motion.tell(at(0), pose(500.0, 1.0)).expect("a pose");
+        let ego = motion.at(at(0));
+        assert_eq!(ego.steady_from_base, Ego::default().steady_from_base);
+        assert!((ego.odom_from_base.yaw_rad() - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
     fn what_never_moves_is_where_it_is_at_any_time() {
         let ego = EgoMotion::still().at(at(1_000_000));
         assert_eq!(ego.knowledge, EgoKnowledge::Measured);
@@ -392,8 +412,11 @@ mod tests {
         let motion = driving();
         motion.tell(at(1_100), pose(511.0, 0.0)).expect("a pose");
         motion.tell(at(1_200), pose(512.0, 0.0)).expect("a pose");
-        let (after, known) = x(&motion, 1_200);
-        assert!((after - 12.0).abs() < 1e-9 && known == EgoKnowledge::Measured);
+        let ego = motion.at(at(1_150));
+        assert_eq!(ego.knowledge, EgoKnowledge::Measured);
+        // In odom it is where it is told to be.
+        assert!((ego.odom_from_base.origin().x() - 511.5).abs() < 1e-9);
+        assert!((ego.steady_from_base.origin().x() - 11.5).abs() < 1e-9);
         assert_eq!(motion.counts().jumps, 1);
     }
 
@@ -428,5 +451,7 @@ mod tests {
         motion.tell(at(-5_000), pose(7.0, 0.0)).expect("a pose");
         assert_eq!(x(&motion, -5_000), (7.0, EgoKnowledge::Measured));
         assert_eq!(motion.counts().restarts, 1);
+        let ego = motion.at(at(-5_000));
+        assert_eq!(ego.steady_from_base.origin().x(), 10.0);
     }
 }

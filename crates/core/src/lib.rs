@@ -4,6 +4,7 @@
 //! top-left pixel at (0, 0) and its corner at (-0.5, -0.5), so scaling an image by `s` maps a column `x`
 //! to `(x + 0.5) * s - 0.5`. Boxes are measured by edges instead, see [`BoxPx`].
 
+pub mod angle;
 pub mod camera_model;
 pub mod detection;
 pub mod distortion;

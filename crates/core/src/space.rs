@@ -16,14 +16,19 @@ pub struct CameraGround;
 /// The vehicle: x forward, y left, z up (REP-105 `base_link`), metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BaseLink;
-/// The ground that the vehicle drives over: fixed to the world, continuous, its origin anywhere (REP-105 `odom`), metres.
+/// The frame that whoever tells of the vehicle's motion tells it in (REP-105 `odom`), metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Odom;
+/// Fixed to the ground as odom is, and never jumps: the vehicle is at its origin when it is first known, and goes on as it
+/// did where odom takes a new origin. What is tracked lives here, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steady;
 
 impl Space for Optical {}
 impl Space for CameraGround {}
 impl Space for BaseLink {}
 impl Space for Odom {}
+impl Space for Steady {}
 
 /// A point in space `S`, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,6 +122,13 @@ impl<To: Space, From: Space> Transform<To, From> {
     #[must_use]
     pub fn origin(&self) -> Point<To> {
         Point::from_coords(self.isometry.translation.vector.into())
+    }
+
+    /// Heading of the x axis of `From` about the z axis of `To`, counter-clockwise, radians in -pi..=pi.
+    #[must_use]
+    pub fn yaw_rad(&self) -> f64 {
+        let forward = self.rotate(Vector3::x());
+        forward.y.atan2(forward.x)
     }
 
     /// Turns a direction (no translation).

@@ -1,6 +1,6 @@
 //! How well speeds are known: velocities of tracked objects against those that their labels move at.
 
-use crate::truth::Truth;
+use crate::{score::quantile, truth::Truth};
 use nalgebra::{Rotation2, Vector2};
 use roadwatch_camera::RigDataset;
 use roadwatch_core::{EgoMotion, Phase, Timestamp, Track};
@@ -50,11 +50,7 @@ pub(crate) struct VelocityError {
 impl TrueMotion {
     /// Of a dataset that says where the vehicle was; `None` of one that does not.
     pub(crate) fn of(dataset: &RigDataset, truth: &Truth) -> Option<Self> {
-        let ego = EgoMotion::default();
-        for (at, world_from_base) in dataset.ego_poses() {
-            // A pose that cannot be is refused, and has no velocity to compare with either.
-            ego.tell(at, world_from_base).ok();
-        }
+        let ego = dataset.ego_motion();
         if ego.counts().taken == 0 {
             return None;
         }
@@ -95,12 +91,7 @@ impl TrueMotion {
             return None;
         }
         let velocity = self.velocity(id, frame)?;
-        let forward = self
-            .ego
-            .at(at)
-            .odom_from_base
-            .rotate(nalgebra::Vector3::x());
-        let turn = Rotation2::new(-forward.y.atan2(forward.x));
+        let turn = Rotation2::new(-self.ego.at(at).odom_from_base.yaw_rad());
         let error = motion.velocity_m_s - turn * velocity;
         let inverse = motion.velocity_covariance.try_inverse()?;
         Some(VelocityError {
@@ -124,15 +115,13 @@ impl MotionReport {
 
 impl VelocityScore {
     fn of<'a>(errors: impl Iterator<Item = &'a VelocityError>) -> Self {
-        let (mut sizes, squares): (Vec<f64>, Vec<f64>) =
+        let (sizes, squares): (Vec<f64>, Vec<f64>) =
             errors.map(|one| (one.error_m_s, one.squared)).unzip();
-        sizes.sort_by(f64::total_cmp);
         let n = sizes.len();
-        let quantile = |share: f64| sizes.get((n as f64 * share) as usize).copied();
         Self {
             n,
-            p50_m_s: quantile(0.5),
-            p90_m_s: quantile(0.9),
+            p50_m_s: quantile(sizes.iter().copied(), 0.5),
+            p90_m_s: quantile(sizes.iter().copied(), 0.9),
             nees: (n > 0).then(|| squares.iter().sum::<f64>() / (2.0 * n as f64)),
         }
     }

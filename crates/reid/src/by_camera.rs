@@ -256,7 +256,7 @@ impl Reidentifier for ByCamera {
 }
 
 /// A heading after some time, in which the object may have turned, or another one has its place.
-fn kept(heading: Heading, age: Duration) -> KeptHeading {
+pub(crate) fn kept(heading: Heading, age: Duration) -> KeptHeading {
     let turned_rad = TURN_STD_RAD_S * age.as_secs_f64();
     KeptHeading {
         heading: Heading {

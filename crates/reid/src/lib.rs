@@ -1,6 +1,6 @@
 //! Who is who: the only memory, of objects and of the ground they stand on.
 //!
-//! [`Tracker`] follows objects in odom, one identity for one object. [`ByCamera`] has the baselines (docs/method.md, section 7): the paper's places from left to right, and overlap.
+//! [`Tracker`] follows objects in the steady frame, one identity for one object. [`ByCamera`] has the baselines (docs/method.md, section 7): the paper's places from left to right, and overlap.
 
 mod assignment;
 pub mod by_bearing;

@@ -1,4 +1,4 @@
-//! Tracking: an extended Kalman filter for each object, in odom; association by place, image and class.
+//! Tracking: an extended Kalman filter for each object, in the steady frame; association by place, image and class.
 
 mod association;
 mod duplicates;

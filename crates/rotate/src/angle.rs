@@ -1,12 +1,7 @@
 //! Three angles that must not be mixed up (docs/method.md, section 6).
 
-use std::f64::consts::{PI, TAU};
-
-/// Wraps an angle to `-pi..=pi`, radians.
-#[must_use]
-pub fn wrapped(angle_rad: f64) -> f64 {
-    angle_rad - TAU * (angle_rad / TAU).round()
-}
+use roadwatch_core::angle::wrapped;
+use std::f64::consts::PI;
 
 /// An object's heading relative to the ray it is seen along, counter-clockwise about the vertical, radians in
 /// `-pi..=pi`: 0 shows its rear, pi its front. What a crop shows.

@@ -1,12 +1,14 @@
 //! From all that is known of an object's direction to one heading.
 
 use crate::{
-    angle::{RayAngle, Yaw, wrapped},
+    angle::{RayAngle, Yaw},
     forest::Turned,
     row::Row,
 };
 use arrayvec::ArrayVec;
-use roadwatch_core::{Heading, HeadingCandidate, Location, location::MAX_HEADING_CANDIDATES};
+use roadwatch_core::{
+    Heading, HeadingCandidate, Location, angle::wrapped, location::MAX_HEADING_CANDIDATES,
+};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// None of the headings that a place allows is right this often: another size than expected, a hidden end.

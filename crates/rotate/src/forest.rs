@@ -3,12 +3,9 @@
 mod file;
 mod training;
 
-use crate::{
-    angle::{ObservationAngle, wrapped},
-    recipe::Recipe,
-    row::Row,
-};
+use crate::{angle::ObservationAngle, recipe::Recipe, row::Row};
 pub use file::ForestFileError;
+use roadwatch_core::angle::wrapped;
 use std::f64::consts::{FRAC_PI_2, PI};
 pub use training::{ForestOptions, TrainingError};
 

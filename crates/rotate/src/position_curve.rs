@@ -1,12 +1,9 @@
 //! The paper's calibration (its section IV, Fig. 13.2): by how much what a crop shows is off from the heading, as a
 //! curve of where the object stands across the camera, taken from objects at one distance.
 
-use crate::{
-    angle::{RayAngle, wrapped},
-    forest::Forest,
-    row::RowTable,
-};
+use crate::{angle::RayAngle, forest::Forest, row::RowTable};
 use nalgebra::{Matrix4, Vector4};
+use roadwatch_core::angle::wrapped;
 use serde::{Deserialize, Serialize};
 use std::{
     f64::consts::FRAC_PI_2,

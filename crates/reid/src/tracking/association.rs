@@ -45,7 +45,7 @@ pub(super) fn may_be_one(one: &ObjectClass, other: &ObjectClass) -> bool {
 
 /// Where an object should be when a frame was captured.
 pub(super) struct Outlook {
-    /// In odom.
+    /// In the steady frame.
     place: Vector2<f64>,
     /// In the image; `None` where the camera does not look.
     pub(super) expected: Option<Expected>,
@@ -88,12 +88,12 @@ pub(super) fn by_image(
     assign(detections.len(), objects.len(), &pairs)
 }
 
-/// Where a located object is, in odom, with the height of its centre; `None` of one that is only remembered, and of
+/// Where a located object is, in the steady frame, with the height of its centre; `None` of one that is only remembered, and of
 /// one that is nowhere.
 pub(super) fn fix(located: &Located, view: &View<'_>, ego: &Ego) -> Option<(Fix, f64)> {
     let location = &located.location;
-    let center = ego.odom_from_base * location.position;
-    let covariance = (ego.odom_from_base * location.covariance).matrix;
+    let center = ego.steady_from_base * location.position;
+    let covariance = (ego.steady_from_base * location.covariance).matrix;
     let fix = Fix {
         place: center.coords.coords.xy(),
         covariance: covariance.fixed_view::<2, 2>(0, 0) * view.doubt(&located.detection.box_px),

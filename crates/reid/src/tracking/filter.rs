@@ -1,11 +1,12 @@
 //! What is believed of one object: an extended Kalman filter over place, motion, heading and what its box gets wrong.
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
+use roadwatch_core::angle::wrapped;
 use std::f64::consts::PI;
 
 /// Numbers of the state.
 pub(super) const DIMS: usize = 8;
-/// The state: position (0, 1), velocity (2, 3) and acceleration (4, 5) in odom; heading (6) and turn rate (7).
+/// The state: position (0, 1), velocity (2, 3) and acceleration (4, 5) in the steady frame; heading (6) and turn rate (7).
 pub(super) type State = SVector<f64, DIMS>;
 pub(super) type StateCovariance = SMatrix<f64, DIMS, DIMS>;
 pub(super) type Row = SMatrix<f64, 1, DIMS>;
@@ -99,7 +100,7 @@ pub(super) struct Filter {
     surprises: u32,
 }
 
-/// Where an object was seen: in odom.
+/// Where an object was seen: in the steady frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Fix {
     /// Where the box says it is.
@@ -329,14 +330,4 @@ impl Filter {
 pub(super) fn squared(apart: &Vector2<f64>, covariance: &Matrix2<f64>) -> f64 {
     let inverse = covariance.try_inverse();
     inverse.map_or(f64::INFINITY, |inverse| apart.dot(&(inverse * apart)))
-}
-
-/// An angle in -pi..=pi.
-pub(super) fn wrapped(angle_rad: f64) -> f64 {
-    let turned = angle_rad.rem_euclid(2.0 * PI);
-    if turned > PI {
-        turned - 2.0 * PI
-    } else {
-        turned
-    }
 }

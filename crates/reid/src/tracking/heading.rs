@@ -1,8 +1,8 @@
 //! Which way an object points: what its parts show, and where it moves.
 
-use super::filter::{Filter, HEADING, Row, wrapped};
+use super::filter::{Filter, HEADING, Row};
 use nalgebra::Vector2;
-use roadwatch_core::Heading;
+use roadwatch_core::{Heading, angle::wrapped};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Looks at one object see much the same, so each counts for this share of what it says of front and back.
@@ -30,7 +30,7 @@ const NORMAL_BY_LOGISTIC: f64 = 1.702;
 /// Heading of something that moves, against its velocity, radians: tyres slip, people look around.
 const MOTION_HEADING_STD: f64 = 0.05;
 
-/// What one frame shows of an object's heading, in odom.
+/// What one frame shows of an object's heading, in the steady frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Look {
     pub(super) heading_rad: f64,
@@ -110,7 +110,7 @@ impl Filter {
         (front / (1.0 - front)).ln()
     }
 
-    /// The heading in odom; `None` when nothing says which way it points.
+    /// The heading in the steady frame; `None` when nothing says which way it points.
     pub(super) fn heading(&self, over_ground: bool) -> Option<Heading> {
         let walks = self.mobility.curvature_std.is_none() && over_ground;
         let walking = walks.then(|| self.motion_heading(LEAST_WALK_M_S)).flatten();

@@ -71,7 +71,7 @@ pub(super) struct Object {
     /// Whether steps were forgotten.
     is_old: bool,
     votes: Vec<Vote>,
-    /// Height of the centre in odom, and of the variance of its last fix.
+    /// Height of the centre in the steady frame, and of the variance of its last fix.
     height_m: f64,
     trail: VecDeque<(Timestamp, Point3<f64>)>,
 }
@@ -81,7 +81,7 @@ pub(super) struct Sight<'a> {
     pub(super) view: &'a View<'a>,
     pub(super) observed: &'a Oriented,
     pub(super) evidence: Evidence,
-    /// Of the centre, in odom.
+    /// Of the centre, in the steady frame.
     pub(super) height_m: f64,
 }
 
@@ -338,10 +338,10 @@ impl Object {
 
     /// Where it was, oldest first, in base_link of a moment.
     pub(super) fn trail(&self, ego: &Ego) -> impl Iterator<Item = Point3<f64>> {
-        let base_from_odom = ego.odom_from_base.isometry.inverse();
+        let base_from_steady = ego.steady_from_base.isometry.inverse();
         self.trail
             .iter()
-            .map(move |(_, point)| base_from_odom * point)
+            .map(move |(_, point)| base_from_steady * point)
     }
 }
 

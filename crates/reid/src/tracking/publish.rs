@@ -1,23 +1,24 @@
-//! From beliefs in odom to what is published: base_link of a moment.
+//! From beliefs in the steady frame to what is published: base_link of a moment.
 
 use super::{
-    filter::{ACCELERATION, TURN, VELOCITY, wrapped},
+    filter::{ACCELERATION, TURN, VELOCITY},
     object::Object,
-    tracker::{Tracker, yaw_of},
+    tracker::Tracker,
 };
 use nalgebra::{Matrix2, Matrix3, Rotation2, Vector2};
 use roadwatch_core::{
     CameraId, Ego, Heading, Location, Motion, Oriented, Phase, SceneObject, Timestamp, Track,
     TrackId,
-    space::{Covariance, Odom, Point},
+    angle::wrapped,
+    space::{Covariance, Point, Steady},
 };
 
 impl Tracker {
     /// What is believed of an object at a moment, `ego` where the vehicle is then.
     pub(super) fn motion(&self, object: &Object, at: Timestamp, ego: &Ego) -> Motion {
         let belief = object.belief_at(at);
-        let base_from_odom = ego.odom_from_base.inverse();
-        let yaw_rad = yaw_of(ego);
+        let base_from_steady = ego.steady_from_base.inverse();
+        let yaw_rad = ego.steady_from_base.yaw_rad();
         let turn = Rotation2::new(-yaw_rad);
         let turned = |vector: Vector2<f64>| turn * vector;
         let turned_matrix =
@@ -35,7 +36,7 @@ impl Tracker {
             phase: self.phase(object, at),
             first_seen: object.first_seen,
             class: object.class().clone(),
-            position: base_from_odom * Point::<Odom>::new(place.x, place.y, object.height_m()),
+            position: base_from_steady * Point::<Steady>::new(place.x, place.y, object.height_m()),
             covariance: Covariance::new(covariance),
             size: object.size(),
             heading: heading.map(|heading| Heading {

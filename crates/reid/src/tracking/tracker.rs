@@ -10,10 +10,10 @@ use super::{
     options::TrackingOptions,
     view::View,
 };
-use crate::ground_memory::GroundMemory;
+use crate::{by_camera::kept, ground_memory::GroundMemory};
 use roadwatch_core::{
-    CameraId, Detection, Ego, EgoKnowledge, Heading, KeptHeading, Known, Oriented, PerFrame, Phase,
-    Prior, Reidentifier, Rig, Round, SceneObject, Timestamp, Track, TrackId,
+    CameraId, Detection, Ego, EgoKnowledge, KeptHeading, Known, Oriented, PerFrame, Phase, Prior,
+    Reidentifier, Rig, Round, SceneObject, Timestamp, Track, TrackId,
 };
 use std::{collections::BTreeMap, sync::Arc, time::Duration};
 
@@ -21,10 +21,8 @@ use std::{collections::BTreeMap, sync::Arc, time::Duration};
 const BEGINS_ANEW: Duration = Duration::from_secs(2);
 /// Between two frames of a camera at most so much time counts as having looked in vain.
 const MOST_INTERVAL: Duration = Duration::from_millis(500);
-/// How fast a kept heading may have changed, radians per second: both may take a corner.
-const TURN_STD_RAD_S: f64 = 0.5;
 
-/// Tracks objects in odom with a Kalman filter each (docs/method.md, section 7).
+/// Tracks objects in the steady frame with a Kalman filter each (docs/method.md, section 7).
 pub struct Tracker {
     pub(super) rig: Arc<Rig>,
     options: TrackingOptions,
@@ -86,9 +84,12 @@ impl Tracker {
 
     fn begin(&mut self, at: Timestamp) {
         if self.begins_anew(at) {
-            self.objects.clear();
-            self.last_frames.clear();
-            self.newest = None;
+            // Only numbers go on, so that nobody is mistaken for somebody of before.
+            *self = Self {
+                next: self.next,
+                late: self.late,
+                ..Self::new(Arc::clone(&self.rig), self.options.clone())
+            };
         }
         self.newest = self.newest.max(Some(at));
     }
@@ -102,13 +103,8 @@ impl Tracker {
         let heading_age = looked.unwrap_or(age).max(Duration::from_nanos(1));
         Prior {
             heading: motion.heading.map(|heading| KeptHeading {
-                heading: Heading {
-                    std_dev_rad: heading
-                        .std_dev_rad
-                        .hypot(TURN_STD_RAD_S * age.as_secs_f64()),
-                    ..heading
-                },
                 age: heading_age,
+                ..kept(heading, age)
             }),
             location: self.location(object, &motion, camera),
             age,
@@ -171,12 +167,6 @@ fn look(observed: &Oriented, ego_yaw_rad: f64) -> Option<Look> {
         std_dev_rad: kept.heading.std_dev_rad,
         flip_probability: kept.heading.flip_probability,
     })
-}
-
-/// The vehicle's heading in odom.
-pub(super) fn yaw_of(ego: &Ego) -> f64 {
-    let forward = ego.odom_from_base.rotate(nalgebra::Vector3::x());
-    forward.y.atan2(forward.x)
 }
 
 impl Reidentifier for Tracker {
@@ -285,7 +275,7 @@ impl Tracker {
         seen: impl Iterator<Item = (&'o Oriented, (Option<Fix>, Option<f64>))>,
         taken: &[Option<usize>],
     ) -> Vec<TrackId> {
-        let yaw_rad = yaw_of(ego);
+        let yaw_rad = ego.steady_from_base.yaw_rad();
         let over_ground = ego.knowledge != EgoKnowledge::None;
         let mut ids = Vec::with_capacity(taken.len());
         for ((observed, (fix, height_m)), &taken) in seen.zip(taken) {

@@ -27,8 +27,8 @@ pub(super) struct View<'a> {
     pub(super) camera: CameraId,
     pub(super) at: Timestamp,
     rig_camera: &'a RigCamera,
-    optical_from_odom: Isometry3<f64>,
-    /// Above the ground, in odom.
+    optical_from_steady: Isometry3<f64>,
+    /// Above the ground, in the steady frame.
     pub(super) eye: Vector2<f64>,
 }
 
@@ -52,7 +52,7 @@ pub(super) struct Expected {
     pub(super) in_view: bool,
 }
 
-/// A box in space, in odom.
+/// A box in space, in the steady frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Solid {
     pub(super) center: Point3<f64>,
@@ -67,13 +67,13 @@ impl<'a> View<'a> {
         rig_camera: &'a RigCamera,
         ego: &Ego,
     ) -> Self {
-        let odom_from_optical = ego.odom_from_base * rig_camera.base_from_optical;
+        let steady_from_optical = ego.steady_from_base * rig_camera.base_from_optical;
         Self {
             camera,
             at,
             rig_camera,
-            optical_from_odom: odom_from_optical.isometry.inverse(),
-            eye: odom_from_optical.isometry.translation.vector.xy(),
+            optical_from_steady: steady_from_optical.isometry.inverse(),
+            eye: steady_from_optical.isometry.translation.vector.xy(),
         }
     }
 
@@ -116,7 +116,7 @@ impl<'a> View<'a> {
     }
 
     fn center(&self, center: &Point3<f64>) -> Option<(Pixel, f64)> {
-        let optical = self.optical_from_odom * center;
+        let optical = self.optical_from_steady * center;
         if optical.z < NEAREST_M {
             return None;
         }
@@ -159,7 +159,7 @@ impl<'a> View<'a> {
                 along * sin + across * cos,
                 side(2) * height_m,
             );
-            let mut optical = self.optical_from_odom * (solid.center + offset);
+            let mut optical = self.optical_from_steady * (solid.center + offset);
             optical.z = optical.z.max(NEAREST_M);
             let pixel = self.rig_camera.model.project(Point::from_coords(optical))?;
             least = least.inf(&pixel);

@@ -2,9 +2,9 @@
 
 mod ring;
 
-use nalgebra::Vector2;
+use nalgebra::{Isometry3, Vector2, Vector3};
 use ring::{at, ego, heading, ring, seen};
-use roadwatch_core::{Ego, PerFrame, Phase, Reidentifier as _, Rig, Round, Track};
+use roadwatch_core::{Ego, EgoMotion, PerFrame, Phase, Reidentifier as _, Rig, Round, Track};
 use roadwatch_reid::{Tracker, TrackingOptions};
 use std::sync::Arc;
 
@@ -150,6 +150,51 @@ fn without_the_vehicles_motion_nothing_is_said_of_headings() {
         let tracks = watched.look(0, millis, &Ego::default(), &place);
         assert_eq!(motion(&tracks.items[0]).heading, None);
     }
+}
+
+#[test]
+fn odometry_that_begins_late_or_jumps_leaves_objects_where_they_are() {
+    let mut watched = Watched::new();
+    let motion = EgoMotion::default();
+    let pose = |x_m: f64, yaw_rad: f64| {
+        Isometry3::new(Vector3::new(x_m, 40.0, 0.0), Vector3::z() * yaw_rad)
+    };
+    let mut ids = Vec::new();
+    for millis in (0..3_000).step_by(100) {
+        // Nobody tells for a second; then far away from any origin, then from another one.
+        match millis {
+            ..1_000 => {}
+            1_000..2_000 => motion.tell(at(millis), pose(500.0, 1.0)).expect("a pose"),
+            _ => motion.tell(at(millis), pose(-900.0, 2.0)).expect("a pose"),
+        }
+        // The car stands ahead of a vehicle that stands, whatever is told.
+        let frame = seen(
+            &watched.rig,
+            0,
+            at(millis),
+            (&ego(0.0, 0.0), &[(15.0, 2.0)]),
+        );
+        let told = motion.at(at(millis));
+        ids.extend(
+            watched
+                .tracker
+                .commit(frame, &[], &told)
+                .items
+                .into_iter()
+                .map(|one| one.id),
+        );
+        let round = Round {
+            seq: 0,
+            stamp: at(millis),
+            perceived: Vec::new(),
+        };
+        for object in watched.tracker.scene(&round, &told) {
+            let off = object.track.position().coords - nalgebra::Point3::new(15.0, 2.0, 0.8);
+            assert!(off.norm() < 0.5, "{millis}: {off}");
+        }
+    }
+    assert!(ids.len() == 30 && ids.iter().all(|id| *id == ids[0]));
+    assert_eq!(motion.counts().jumps, 1);
 }
 
 #[test]

@@ -68,17 +68,17 @@ pub(crate) fn frame(camera: u8, at: Timestamp) -> Frame {
     }
 }
 
-/// What a camera sees of cars at these places of odom, and where it says they are.
+/// What a camera sees of cars at these places of the steady frame, and where it says they are.
 pub(crate) fn seen(
     rig: &Rig,
     camera: u8,
     stamp: Timestamp,
     (ego, places): (&Ego, &[(f64, f64)]),
 ) -> PerFrame<Oriented> {
-    let base_from_odom = ego.odom_from_base.isometry.inverse();
+    let base_from_steady = ego.steady_from_base.isometry.inverse();
     let rig_camera = rig.camera(CameraId(camera));
     let items = places.iter().filter_map(|&(x, y)| {
-        let center = base_from_odom * Point3::new(x, y, CAR.height_m / 2.0);
+        let center = base_from_steady * Point3::new(x, y, CAR.height_m / 2.0);
         let box_px = box_of(rig_camera, center)?;
         Some(oriented(rig_camera, center, box_px))
     });
@@ -145,10 +145,11 @@ pub(crate) fn heading(yaw_rad: f64, flip_probability: f64) -> Option<KeptHeading
     })
 }
 
-/// The vehicle at a place of odom, as measured.
+/// The vehicle at a place, as measured by odometry that began at the origin.
 pub(crate) fn ego(x_m: f64, yaw_rad: f64) -> Ego {
     let pose = Isometry3::new(Vector3::new(x_m, 0.0, 0.0), Vector3::z() * yaw_rad);
     Ego {
+        steady_from_base: roadwatch_core::space::Transform::new(pose),
         odom_from_base: roadwatch_core::space::Transform::new(pose),
         knowledge: roadwatch_core::EgoKnowledge::Measured,
     }

@@ -59,11 +59,6 @@ fn of_bag(bag: &Path, source: &EgoSource, notes: &mut Notes) -> Arc<EgoMotion> {
 }
 
 fn of_dataset(config: &Config) -> EgoMotion {
-    let motion = EgoMotion::recorded();
     let dataset = config.rig.as_ref().and_then(|rig| rig.dataset.as_ref());
-    for (at, world_from_base) in dataset.iter().flat_map(|dataset| dataset.ego_poses()) {
-        // What cannot be is counted by the motion itself.
-        motion.tell(at, world_from_base).ok();
-    }
-    motion
+    dataset.map_or_else(EgoMotion::default, |dataset| dataset.ego_motion())
 }

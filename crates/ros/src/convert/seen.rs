@@ -4,8 +4,8 @@ use crate::msg::std_msgs::Header;
 use nalgebra::{Isometry3, Matrix2, Matrix3, Point3, Rotation2, Vector2, Vector3};
 use roadwatch_core::{
     CameraId, Ego, Heading, Motion, PerFrame, Phase, Rig, Scene, SceneObject, Timestamp, Track,
+    angle::wrapped,
 };
-use std::f64::consts::PI;
 
 /// One object with its own stamp.
 pub(crate) struct Seen<'a> {
@@ -174,14 +174,5 @@ fn depth_range_m(rig: &Rig, camera: Option<&CameraId>, track: &Track) -> (f64, f
             )
         }
         _ => (location.depth_m, location.range_m),
-    }
-}
-
-fn wrapped(angle_rad: f64) -> f64 {
-    let turned = angle_rad.rem_euclid(2.0 * PI);
-    if turned > PI {
-        turned - 2.0 * PI
-    } else {
-        turned
     }
 }

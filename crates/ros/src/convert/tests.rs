@@ -279,6 +279,7 @@ fn tracked_scene() -> Output {
     let turned = Isometry3::new(Vector3::new(100.0, 0.0, 0.0), Vector3::z() * 0.5);
     scene.ego = Ego {
         odom_from_base: Transform::new(turned),
+        steady_from_base: Transform::new(Isometry3::identity()),
         knowledge: EgoKnowledge::Measured,
     };
     Output::Scene(Arc::new(scene))
