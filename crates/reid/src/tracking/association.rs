@@ -19,8 +19,9 @@ const SURE_OVERLAP: f32 = 0.5;
 const MOST_SURPRISE_OVERLAPPING: f64 = 100.0;
 /// What no overlap at all costs, in squared deviations; half an overlap costs half.
 const NO_OVERLAP: f64 = 8.0;
-/// What another class of the same kind costs: detectors waver between car and truck.
-const OTHER_CLASS: f64 = 3.0;
+/// A class costs by the share of its votes among all that an object had, as squared deviations do: detectors waver between
+/// car and truck, and who wavered may again. No class is rarer than this: it costs eight.
+const LEAST_SHARE: f64 = 0.02;
 /// What it costs to begin a new object.
 const NEW_OBJECT: f64 = 24.0;
 /// Nobody looks for partners further away than this, metres …
@@ -128,20 +129,14 @@ impl Candidates<'_> {
                 if !may_be_one(object.class(), &detection.class) {
                     continue;
                 }
-                let other_class = if object.class() == &detection.class {
-                    0.0
-                } else {
-                    OTHER_CLASS
-                };
+                let class = -2.0 * object.share_of(&detection.class).max(LEAST_SHARE).ln();
                 let by_place = match fix {
                     Some(fix) => self.by_place(fix, column, overlap, &mut beliefs[column]),
                     // Where it is nobody knows, so that it is in the image what it was.
                     None => (overlap >= LEAST_OVERLAP).then_some(0.0),
                 };
                 let cost = by_place.map(|squared| {
-                    squared.min(MOST_SURPRISE)
-                        + other_class
-                        + NO_OVERLAP * (1.0 - f64::from(overlap))
+                    squared.min(MOST_SURPRISE) + class + NO_OVERLAP * (1.0 - f64::from(overlap))
                 });
                 pairs.extend(cost.filter(|cost| *cost < NEW_OBJECT).map(|cost| Pair {
                     row,

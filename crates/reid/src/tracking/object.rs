@@ -264,6 +264,18 @@ impl Object {
         &self.settled().class
     }
 
+    /// Share of a class among all that frames said of it.
+    pub(super) fn share_of(&self, class: &ObjectClass) -> f64 {
+        let (mut of_class, mut all) = (0.0, 0.0);
+        for vote in &self.votes {
+            all += vote.weight;
+            if vote.class == *class {
+                of_class += vote.weight;
+            }
+        }
+        of_class / all
+    }
+
     /// How large things of its class are.
     pub(super) fn size(&self) -> SizeLwh {
         self.settled().size
