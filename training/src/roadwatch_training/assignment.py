@@ -32,6 +32,10 @@ class Targets:
     sought: Tensor
     ignored: Tensor
 
+    def to(self, device: torch.device) -> Targets:
+        """The same on another device."""
+        return Targets(*(part.to(device) for part in (self.boxes_px, self.classes, self.sought, self.ignored)))
+
 
 @dataclass(frozen=True)
 class Assignment:

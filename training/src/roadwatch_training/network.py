@@ -204,6 +204,10 @@ class Cells:
             strides.append(torch.full((y.numel(),), float(stride)))
         return cls(torch.cat(centres), torch.cat(strides))
 
+    def to(self, device: torch.device) -> Cells:
+        """The same on another device."""
+        return Cells(self.centres_px.to(device), self.strides_px.to(device))
+
 
 def corner_boxes(raw: Tensor, cells: Cells) -> Tensor:
     """Boxes (batch, cells, 4) as left, top, right, bottom, input pixels, from the network's raw output."""

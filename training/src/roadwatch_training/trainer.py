@@ -17,6 +17,7 @@ from .averaging import AveragedWeights
 from .batches import Batch, BatchPlan, batches
 from .checkpoint import Checkpoint
 from .descent import descend, learning_rate, optimiser_of
+from .device import training_device
 from .errors import TrainingError
 from .exported import read_exported, settle_normalisation
 from .images import ImageStore
@@ -50,10 +51,12 @@ class Training:
         torch.manual_seed(settings.seed)
         if settings.threads:
             torch.set_num_threads(settings.threads)
-        self.network = DetectorNetwork(SHAPES[settings.width]).to(memory_format=torch.channels_last)
+        self.device = training_device()
+        network = DetectorNetwork(SHAPES[settings.width])
+        self.network = network.to(self.device, memory_format=torch.channels_last)
         self.average = AveragedWeights(self.network)
         self.optimiser = optimiser_of(self.network, settings.learning_rate, settings.weight_decay)
-        self.cells = Cells.of_input(settings.width_px, settings.height_px)
+        self.cells = Cells.of_input(settings.width_px, settings.height_px).to(self.device)
         self.settled = True
         self.batches_done = 0
         self.seconds_before = 0.0
@@ -87,7 +90,7 @@ class Training:
     def _settle(self, made: Iterator[Batch]) -> None:
         """Lets the first examples say what the normalisations of exported weights undo."""
         settling = itertools.islice(made, SETTLING_BATCHES)
-        settle_normalisation(self.network, (batch.network_input() for batch in settling))
+        settle_normalisation(self.network, (batch.to(self.device).network_input() for batch in settling))
         self.average = AveragedWeights(self.network)
         self.settled = True
 
@@ -120,7 +123,7 @@ class Training:
                 saved = time.monotonic()
         self.save()
         report.say()
-        return Trained(self.average.network, self.batches_done * self.settings.batch_size, self.seconds)
+        return Trained(self.average.network.cpu(), self.batches_done * self.settings.batch_size, self.seconds)
 
     def save(self) -> None:
         """Writes the checkpoint."""
@@ -140,6 +143,7 @@ class Training:
 
     def _step(self, network: nn.Module, batch: Batch) -> Losses:
         self.network.train()
+        batch = batch.to(self.device)
         losses = detection_losses(network(batch.network_input()), batch.targets, self.cells)
         s = self.settings
         rate = learning_rate(s.learning_rate, s.warm_up_batches, self.batches_done, self.progress)
