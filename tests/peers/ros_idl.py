@@ -357,6 +357,7 @@ class ObjectArray(IdlStruct, typename="roadwatch_msgs::msg::dds_::ObjectArray_")
     header: Header
     camera: str
     ego_motion: str
+    ego_pose: Pose
     objects: sequence[Object]
 
 

@@ -89,6 +89,7 @@ mod tests {
             &[0, 0, 0],
             &[1, 0, 0, 0, 0], // ego_motion, too
             &[0, 0, 0],
+            &[0; 7 * 8],   // ego_pose
             &[0, 0, 0, 0], // no objects
         ]
         .concat();

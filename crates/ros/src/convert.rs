@@ -17,11 +17,12 @@ use crate::{
         vision_msgs::{Detection2DArray, Detection3DArray},
         visualization_msgs::MarkerArray,
     },
+    scene_lines::LineCamera,
     surface::{InvalidSurface, Surface},
     topics::{Topic, TopicKind, Topics},
 };
 use nalgebra::Isometry3;
-use roadwatch_core::{CameraId, Output, Perceived, Rig, Scene, Timestamp};
+use roadwatch_core::{CameraId, Output, Perceived, Rig, RigCamera, Scene, Timestamp};
 use seen::{PublishedIn, SeenTogether};
 use serde::Serialize;
 use std::{ops::Range, sync::Arc};
@@ -156,6 +157,24 @@ impl Messages {
             topic: Topics::TF_STATIC,
             message: Message::TfStatic(calibration::tf_static(&self.rig, &self.base_frame, stamp)),
         }
+    }
+
+    /// Everything that is known of a scene, in the frame that it is published in.
+    #[must_use]
+    pub fn scene_objects(&self, scene: &Scene) -> ObjectArray {
+        let frame = self.scene_frame(scene);
+        objects::objects(&SeenTogether::in_scene(&self.rig, &frame, scene))
+    }
+
+    /// The rig for [`scene_lines`](crate::scene_lines).
+    #[must_use]
+    pub fn line_cameras(&self) -> Vec<LineCamera> {
+        let camera = |camera: &RigCamera| LineCamera {
+            name: camera.name.as_str().to_owned(),
+            base_from_optical: (&camera.base_from_optical.isometry).into(),
+            camera_info: calibration::camera_info(camera, Timestamp::default()),
+        };
+        self.rig.cameras().iter().map(camera).collect()
     }
 
     fn of_camera(&self, perceived: &Perceived, topics: Vec<usize>) -> Vec<Outgoing> {

@@ -18,6 +18,7 @@ pub(crate) fn objects(seen: &SeenTogether) -> ObjectArray {
         header: seen.header(),
         camera: seen.camera.to_owned(),
         ego_motion: seen.ego.knowledge.as_str().to_owned(),
+        ego_pose: (&seen.ego.odom_from_base.isometry).into(),
         objects: seen.objects.iter().map(|one| object(seen, one)).collect(),
     }
 }

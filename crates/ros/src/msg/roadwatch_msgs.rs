@@ -2,7 +2,7 @@
 
 use super::{
     builtin_interfaces::Time,
-    geometry_msgs::{Point, Vector3},
+    geometry_msgs::{Point, Pose, Vector3},
     std_msgs::Header,
     unique_identifier_msgs::UUID,
 };
@@ -97,6 +97,8 @@ pub struct ObjectArray {
     pub camera: String,
     /// How the vehicle's own motion is known.
     pub ego_motion: String,
+    /// Where base_link stands in odom.
+    pub ego_pose: Pose,
     /// Empty when nothing was seen.
     pub objects: Vec<Object>,
 }
