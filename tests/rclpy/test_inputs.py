@@ -51,7 +51,7 @@ def daemon(start, tmp_path_factory):
 [detector]
 model = "{ROOT}/models/roadwatch_detector.onnx"
 family = "yolov8"
-score_threshold = 0.46
+score_threshold = 0.50
 exclusive_classes = ["car", "bus", "truck"]
 
 [locate]

@@ -8,7 +8,7 @@ from parameters import BOOL, DOUBLE, NOT_SET, STRING, STRINGS, ParameterClient, 
 
 THRESHOLD = "detector.score_threshold"
 # As in config/demo.toml.
-CONFIGURED = 0.46
+CONFIGURED = 0.5
 
 
 @pytest.fixture(scope="module")

@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod evaluate;
+mod export;
 mod models;
 mod rotation;
 mod study;
@@ -12,6 +13,7 @@ pub use calibrate::{
     CalibrateRotationArgs, SolvedPart, TrustedPart,
 };
 pub use evaluate::{EvaluateArgs, FormatName};
+pub use export::{ExportCommand, ExportFramesArgs, ExportGltfArgs, ExportSceneArgs, RecordingArgs};
 pub use models::{ModelsCommand, ModelsFetchArgs, ModelsListArgs, ModelsVerifyArgs};
 pub use rotation::{
     RecipeName, RotationCommand, RotationEvaluateArgs, RotationRowsArgs, RotationTrainArgs,
@@ -22,7 +24,7 @@ pub use table::{TableBuildArgs, TableCommand, TableInspectArgs, TableQueryArgs};
 use crate::{commands, failure::Failure, node::RosoutTap};
 use clap::{Args, CommandFactory as _, Parser, Subcommand, ValueEnum, error::ErrorKind};
 use roadwatch_ros::RosArgs;
-use std::{ffi::OsString, io::IsTerminal as _, path::PathBuf, process::ExitCode};
+use std::{ffi::OsString, io::IsTerminal as _, net::SocketAddr, path::PathBuf, process::ExitCode};
 use tracing_subscriber::{EnvFilter, layer::SubscriberExt as _, util::SubscriberInitExt as _};
 
 /// The middleware warns of what is normal here (no ROS installation) and reports errors on every clean
@@ -61,6 +63,9 @@ pub enum Command {
     Table(TableCommand),
     /// Run the pipeline over a labelled dataset and score every method side by side.
     Evaluate(EvaluateArgs),
+    /// Make something of a recording: JSON lines, data frames, a 3D scene.
+    #[command(subcommand)]
+    Export(ExportCommand),
     /// Headings from key components: rows, forests, and how good they are.
     #[command(subcommand)]
     Rotation(RotationCommand),
@@ -125,7 +130,8 @@ pub enum Pace {
     roadwatch run config/demo.toml\n  \
     roadwatch run config/pandaset.toml --pace lossless --bag out\n  \
     roadwatch run config/pandaset.toml --pace lossless --score --pictures pictures\n  \
-    roadwatch run config/pandaset.toml --loop --speed 2"
+    roadwatch run config/pandaset.toml --loop --speed 2\n  \
+    roadwatch run config/demo.toml --loop --scene-stream 127.0.0.1:7600"
 )]
 pub struct RunArgs {
     /// The configuration file (TOML).
@@ -145,6 +151,9 @@ pub struct RunArgs {
     /// Begin another file of the bag after so many seconds.
     #[arg(long, value_name = "SECS", requires = "bag", value_parser = clap::value_parser!(u64).range(1..))]
     pub bag_split_secs: Option<u64>,
+    /// Offer the scene as JSON lines on this address, whatever the configuration says; port 0 takes a free one.
+    #[arg(long, value_name = "ADDRESS")]
+    pub scene_stream: Option<SocketAddr>,
     /// Draw the fullest round of the run into this folder: views.png, every camera with its 3D boxes, and
     /// scene.png, the scene from above.
     #[arg(long, value_name = "DIR")]
@@ -229,6 +238,7 @@ fn run(command: Command, rosout: &RosoutTap) -> Result<(), Failure> {
         Command::Table(TableCommand::Inspect(args)) => commands::table::inspect(&args),
         Command::Table(TableCommand::Query(args)) => commands::table::query(&args),
         Command::Evaluate(args) => commands::evaluate::run(&args),
+        Command::Export(command) => commands::export::run(&command),
         Command::Rotation(command) => commands::rotation::run(&command),
         Command::Study(args) => commands::study::run(&args),
         Command::Models(ModelsCommand::List(args)) => commands::models::list(&args),

@@ -8,6 +8,7 @@ mod camera_info_check;
 mod ego;
 mod image_topic;
 mod one_publisher;
+mod recorded;
 mod transforms;
 
 use crate::msg::{
@@ -20,6 +21,7 @@ pub use bag_error::BagImagesError;
 pub use bag_images::{BagImages, BagSpan};
 pub use ego::{EgoListener, EgoSource, tell_from_bag};
 pub use image_topic::{ImageTopic, ToImage, TopicCamera};
+pub use recorded::{Recorded, RecordedError};
 
 /// ROS's customary end of the names of topics with compressed images (`image_transport`).
 const COMPRESSED: &str = "/compressed";

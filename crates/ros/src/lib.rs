@@ -29,7 +29,8 @@ mod testing;
 pub use bag::{BagError, BagOptions, BagSink, LogTime};
 pub use convert::{Message, Messages, Outgoing};
 pub use input::{
-    BagImages, EgoListener, EgoSource, ImageMessage, ImageTopic, TopicCamera, tell_from_bag,
+    BagImages, EgoListener, EgoSource, ImageMessage, ImageTopic, Recorded, RecordedError,
+    TopicCamera, tell_from_bag,
 };
 pub use lifecycle::Lifecycle;
 pub use node::{Network, Outlet, RosError, RosNode, RosOptions, Service};

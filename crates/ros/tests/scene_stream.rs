@@ -106,7 +106,10 @@ fn a_slow_reader_is_sent_away_and_a_free_one_gets_everything() {
         assert_eq!(free.next().expect("a scene")["type"], "scene");
     }
     assert!(given > QUEUED_SCENES, "had its queue: {given}");
-    assert!(slowest < PATIENCE / 5, "publishing waits for nobody: {slowest:?}");
+    assert!(
+        slowest < PATIENCE / 5,
+        "publishing waits for nobody: {slowest:?}"
+    );
     drop(slow);
     stream.publish(&scene(1, 1)).expect("published");
     assert_eq!(free.next().expect("a scene")["seq"], 1);

@@ -3,6 +3,7 @@
 pub mod calibrate;
 pub mod check;
 pub mod evaluate;
+pub mod export;
 pub mod graph;
 pub mod models;
 mod output;

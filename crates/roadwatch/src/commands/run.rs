@@ -16,8 +16,9 @@ use roadwatch_camera::{Pace as PlaybackPace, PlaybackOptions, Repeat, Speed};
 use roadwatch_core::Sink;
 use roadwatch_picture::{PictureSink, SCENE_FILE, VIEWS_FILE};
 use roadwatch_pipeline::{Metrics, NamedSink, Overload, PipelineOptions};
-use roadwatch_ros::{BagOptions, BagSink, LogTime, bag::EncodeImage};
+use roadwatch_ros::{BagOptions, BagSink, LogTime, Messages, SceneStream, bag::EncodeImage};
 use std::{
+    net::SocketAddr,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -30,6 +31,8 @@ use std::{
 const BAG: &str = "bag";
 /// The drawer's name among the sinks.
 const PICTURES: &str = "pictures";
+/// The scene stream's name among the sinks.
+const SCENE_STREAM: &str = "scene stream";
 /// One status line per second.
 const STATUS_PERIOD: Duration = Duration::from_secs(1);
 
@@ -229,6 +232,9 @@ fn sinks(
         );
         add(BAG, Box::new(bag.context("nothing can be recorded")?));
     }
+    if let Some(address) = args.scene_stream.or(session.config.scene_stream) {
+        add(SCENE_STREAM, Box::new(scene_stream(address, session)?));
+    }
     if let Some(folder) = &args.pictures {
         let sink = PictureSink::create(folder, Arc::clone(&session.rig));
         let sink =
@@ -236,4 +242,18 @@ fn sinks(
         add(PICTURES, Box::new(sink));
     }
     Ok(sinks)
+}
+
+fn scene_stream(address: SocketAddr, session: &Session) -> Result<SceneStream, Failure> {
+    let surface = &session.config.node.options.surface;
+    let messages = Messages::new(Arc::clone(&session.rig), surface);
+    let messages = messages.context("no scene can be offered")?;
+    let stream = SceneStream::listen(address, messages).with_context(|| {
+        format!(
+            "the scene cannot be offered on {address}: is another daemon there, or is it not an address of this \
+             machine? Change `listen` in [scene_stream], or --scene-stream"
+        )
+    })?;
+    eprintln!("scene stream: {}", stream.address());
+    Ok(stream)
 }

@@ -18,6 +18,7 @@ mod notes;
 mod reader;
 mod reid;
 pub mod rotation;
+mod scene_stream;
 mod values;
 
 pub use camera_source::SourceConfig;
@@ -37,7 +38,7 @@ pub use rotation::RotationConfig;
 use document::Document;
 use reader::Reader;
 use roadwatch_pipeline::PipelineOptions;
-use std::{fs, path::Path, time::Duration};
+use std::{fs, net::SocketAddr, path::Path, time::Duration};
 
 /// Longer than this no round is worth waiting for, seconds.
 const LONGEST_SCENE_TIMEOUT_SECS: f64 = 60.0;
@@ -65,6 +66,8 @@ pub struct Config {
     pub reid: ReidConfig,
     /// `[ego]`.
     pub ego: EgoConfig,
+    /// `[scene_stream] listen`; `None` where the scene is not offered.
+    pub scene_stream: Option<SocketAddr>,
     /// `[enabled]`: whether each camera, in order of their ids, is looked at from the start.
     pub enabled: Vec<bool>,
     /// `[diagnostics]`.
@@ -122,6 +125,7 @@ fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<DatasetChoice>) -> C
         "scene",
         "reid",
         "ego",
+        "scene_stream",
         "enabled",
         "diagnostics",
     ];
@@ -135,6 +139,7 @@ fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<DatasetChoice>) -> C
         scene,
         reid,
         ego,
+        scene_stream,
         enabled,
         diagnostics,
     ] = &sections;
@@ -154,6 +159,7 @@ fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<DatasetChoice>) -> C
         detector: detector::read(detector),
         reid: reid::read(reid),
         ego: ego::read(ego),
+        scene_stream: scene_stream::read(scene_stream),
         diagnostics: diagnostics::read(diagnostics),
         enabled: read_enabled(enabled, rig_config.as_ref()),
         rig: rig_config,
