@@ -7,6 +7,7 @@ pub mod baseline;
 pub mod bootstrap;
 pub mod dataset_format;
 pub mod evaluate;
+pub mod export;
 pub mod footprint;
 pub mod grouping;
 pub mod heading_score;

@@ -30,6 +30,7 @@ const ARROWS: [(&str, &[&str]); 14] = [
             "roadwatch-detect",
             "roadwatch-locate",
             "roadwatch-reid",
+            "roadwatch-ros",
             "roadwatch-rotate",
         ],
     ),

@@ -89,8 +89,9 @@ mod tests {
             &[0, 0, 0],
             &[1, 0, 0, 0, 0], // ego_motion, too
             &[0, 0, 0],
-            &[0; 7 * 8],   // ego_pose
-            &[0, 0, 0, 0], // no objects
+            &[0; 6 * 8],                     // ego_pose: a place, x, y and z of no turn
+            &[0, 0, 0, 0, 0, 0, 0xf0, 0x3f], // and its w, one
+            &[0, 0, 0, 0],                   // no objects
         ]
         .concat();
         assert_eq!(bytes, expected);

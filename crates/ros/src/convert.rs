@@ -17,7 +17,7 @@ use crate::{
         vision_msgs::{Detection2DArray, Detection3DArray},
         visualization_msgs::MarkerArray,
     },
-    scene_lines::LineCamera,
+    scene_lines::{LineCamera, LineRig},
     surface::{InvalidSurface, Surface},
     topics::{Topic, TopicKind, Topics},
 };
@@ -168,13 +168,16 @@ impl Messages {
 
     /// The rig for [`scene_lines`](crate::scene_lines).
     #[must_use]
-    pub fn line_cameras(&self) -> Vec<LineCamera> {
+    pub fn line_rig(&self) -> LineRig {
         let camera = |camera: &RigCamera| LineCamera {
             name: camera.name.as_str().to_owned(),
             base_from_optical: (&camera.base_from_optical.isometry).into(),
             camera_info: calibration::camera_info(camera, Timestamp::default()),
         };
-        self.rig.cameras().iter().map(camera).collect()
+        LineRig {
+            base_frame: self.base_frame.clone(),
+            cameras: self.rig.cameras().iter().map(camera).collect(),
+        }
     }
 
     fn of_camera(&self, perceived: &Perceived, topics: Vec<usize>) -> Vec<Outgoing> {

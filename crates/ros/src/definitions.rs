@@ -214,10 +214,12 @@ mod tests {
             named,
             [
                 "std_msgs/Header",
+                "geometry_msgs/Pose",
                 "roadwatch_msgs/Object",
                 "builtin_interfaces/Time",
-                "unique_identifier_msgs/UUID",
                 "geometry_msgs/Point",
+                "geometry_msgs/Quaternion",
+                "unique_identifier_msgs/UUID",
                 "geometry_msgs/Vector3",
                 "roadwatch_msgs/KeyComponent",
             ]

@@ -8,6 +8,15 @@ pub const SCHEMA: &str = "roadwatch_scene";
 /// Rises when a key goes away or changes its meaning.
 pub const VERSION: u32 = 1;
 
+/// The rig as the first line has it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct LineRig {
+    /// The vehicle's frame. Positions of scenes whose header names another are in odom.
+    pub base_frame: String,
+    /// Every camera.
+    pub cameras: Vec<LineCamera>,
+}
+
 /// A camera as the first line has it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct LineCamera {
@@ -25,7 +34,8 @@ enum Line<'a> {
     Rig {
         schema: &'static str,
         version: u32,
-        cameras: &'a [LineCamera],
+        #[serde(flatten)]
+        rig: &'a LineRig,
     },
     Scene {
         seq: u64,
@@ -35,11 +45,11 @@ enum Line<'a> {
 
 /// The first line, with its line feed.
 #[must_use]
-pub fn rig_line(cameras: &[LineCamera]) -> String {
+pub fn rig_line(rig: &LineRig) -> String {
     line(&Line::Rig {
         schema: SCHEMA,
         version: VERSION,
-        cameras,
+        rig,
     })
 }
 
@@ -76,7 +86,12 @@ mod tests {
             name: "front".to_owned(),
             ..LineCamera::default()
         };
-        let line = parsed(&rig_line(&[camera]));
+        let rig = LineRig {
+            base_frame: "base_link".to_owned(),
+            cameras: vec![camera],
+        };
+        let line = parsed(&rig_line(&rig));
+        assert_eq!(line["base_frame"], "base_link");
         assert_eq!(line["type"], "rig");
         assert_eq!(line["schema"], "roadwatch_scene");
         assert_eq!(line["version"], 1);

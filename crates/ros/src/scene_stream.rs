@@ -65,7 +65,7 @@ impl SceneStream {
         let address = listener.local_addr()?;
         let readers = Readers::default();
         let stopped = Arc::new(AtomicBool::new(false));
-        let first: Arc<str> = rig_line(&messages.line_cameras()).into();
+        let first: Arc<str> = rig_line(&messages.line_rig()).into();
         let door = thread::Builder::new().name("scene-stream".to_owned());
         let (to, until) = (Arc::clone(&readers), Arc::clone(&stopped));
         let door = door.spawn(move || take_in(&listener, &first, &to, &until))?;
@@ -114,7 +114,7 @@ impl Sink for SceneStream {
         let readers = std::mem::take(&mut *locked(&self.readers));
         let leaving: Vec<Leaving> = readers.into_iter().map(Reader::leave).collect();
         while leaving.iter().any(Leaving::is_writing) && Instant::now() < until {
-            thread::sleep(LOOK);
+            thread::park_timeout(LOOK);
         }
         Ok(())
     }
@@ -188,10 +188,10 @@ fn take_in(listener: &TcpListener, first: &Arc<str>, readers: &Readers, stopped:
     while !stopped.load(Ordering::Relaxed) {
         match listener.accept() {
             Ok((socket, address)) => admit(socket, address, first, readers),
-            Err(error) if error.kind() == io::ErrorKind::WouldBlock => thread::sleep(LOOK),
+            Err(error) if error.kind() == io::ErrorKind::WouldBlock => thread::park_timeout(LOOK),
             Err(error) => {
                 tracing::warn!(%error, "a reader of the scene stream could not connect");
-                thread::sleep(LOOK);
+                thread::park_timeout(LOOK);
             }
         }
     }

@@ -62,7 +62,7 @@ fn until(what: &str, holds: impl Fn() -> bool) {
     let began = Instant::now();
     while !holds() {
         assert!(began.elapsed() < PATIENCE, "in vain: {what}");
-        thread::sleep(Duration::from_millis(5));
+        thread::park_timeout(Duration::from_millis(5));
     }
 }
 
@@ -125,7 +125,7 @@ fn who_went_away_is_forgotten_and_who_comes_late_gets_what_is_new() {
         assert!(seq < 1000, "never forgotten");
         stream.publish(&scene(seq, 1)).expect("published");
         seq += 1;
-        thread::sleep(Duration::from_millis(1));
+        thread::park_timeout(Duration::from_millis(1));
     }
     let mut late = Lines::of(&stream);
     until("connected again", || stream.readers() == 1);

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .pose import Pose, about_z, euler_xyz
-from .schema import BASE_FRAME, Scene, SceneObject
+from .schema import Scene, SceneObject
 
 NOBODY_TELLS = "none"
 
@@ -32,11 +32,15 @@ class PlacedScene:
     objects: tuple[Placed, ...]
 
 
+DEFAULT_BASE_FRAME = "base_link"
+
+
 class Placement:
     """Places one scene after the other; remembers where the vehicle was while nobody tells."""
 
     def __init__(self, first_pose: Pose | None = None) -> None:
         """`first_pose` stands in for the vehicle's pose until one is known."""
+        self.base_frame = DEFAULT_BASE_FRAME
         self._pose = first_pose or Pose.identity()
 
     def place(self, scene: Scene) -> PlacedScene:
@@ -48,7 +52,7 @@ class Placement:
         count = len(scene.objects)
         points = np.array([seen.position_m for seen in scene.objects], dtype=float).reshape(count, 3)
         turns = about_z(np.array([seen.yaw_rad or 0.0 for seen in scene.objects], dtype=float))
-        if scene.frame == BASE_FRAME or not has_pose:
+        if scene.frame == self.base_frame or not has_pose:
             points, turns = pose.apply(points), pose.rotation @ turns
         level = (points - pose.position_m)[:, :2]
         distances, eulers = np.hypot(level[:, 0], level[:, 1]), euler_xyz(turns)

@@ -12,7 +12,6 @@ from .pose import Pose
 
 SCHEMA = "roadwatch_scene"
 KNOWN_VERSION = 1
-BASE_FRAME = "base_link"
 NS_PER_S = 1_000_000_000
 
 
@@ -33,8 +32,9 @@ class RigCamera:
 
 @dataclass(frozen=True)
 class Rig:
-    """The first line."""
+    """The first line; scenes in any frame but `base_frame` are in odom."""
 
+    base_frame: str
     cameras: tuple[RigCamera, ...]
 
 
@@ -57,7 +57,7 @@ class SceneObject:
 
 @dataclass(frozen=True)
 class Scene:
-    """One scene: positions are in `frame`, `base_link` or else odom; `ego_pose` is odom_from_base."""
+    """One scene: positions are in `frame`, the rig's or else odom; `ego_pose` is odom_from_base."""
 
     seq: int
     stamp_ns: int
@@ -102,7 +102,7 @@ def _rig(line: dict[str, Any]) -> Rig:
             f"the stream is {SCHEMA} version {version}, and this viewer knows none above {KNOWN_VERSION}: "
             "install the viewer that came with this daemon"
         )
-    return Rig(tuple(_camera(camera) for camera in line["cameras"]))
+    return Rig(_text(line["base_frame"]), tuple(_camera(camera) for camera in line["cameras"]))
 
 
 def _camera(camera: dict[str, Any]) -> RigCamera:

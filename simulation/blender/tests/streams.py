@@ -60,8 +60,11 @@ def a_camera(name, size_px, k, position, xyzw) -> dict:
     return {"name": name, "base_from_optical": pose, "camera_info": described}
 
 
-def a_rig(cameras=(), version=1) -> dict:
-    return {"type": "rig", "schema": "roadwatch_scene", "version": version, "cameras": list(cameras)}
+def a_rig(cameras=(), version=1, base_frame="base_link") -> dict:
+    return {
+        "type": "rig", "schema": "roadwatch_scene", "version": version,
+        "base_frame": base_frame, "cameras": list(cameras),
+    }  # fmt: skip
 
 
 FRONT = a_camera(

@@ -27,6 +27,15 @@ def test_a_scene_in_base_link_is_put_where_the_vehicle_is():
     assert only.distance_m == pytest.approx(np.hypot(10, 2))
 
 
+def test_the_rig_says_what_its_frame_is_called():
+    placement = Placement()
+    placement.base_frame = "rear_axle"
+    in_base = placement.place(scene([an_object(1, (10, 0, 0.75))], ego=(5.0, 0.0, 0.0), frame="rear_axle"))
+    in_odom = placement.place(scene([an_object(1, (10, 0, 0.75))], ego=(5.0, 0.0, 0.0), frame="base_link"))
+    assert in_base.objects[0].position_m[0] == pytest.approx(15.0)
+    assert in_odom.objects[0].position_m[0] == pytest.approx(10.0)
+
+
 def test_a_scene_in_odom_stays_and_distances_are_from_the_vehicle():
     placed = Placement().place(
         scene([an_object(1, (4e6 + 30, 5e5 + 40, 0.75), yaw=2.0)], frame="odom", ego=(4e6, 5e5, 0))

@@ -91,18 +91,22 @@ fn line(sample: &Sample) -> Option<Line> {
 }
 
 /// The vehicle's forward axis points up the picture.
-fn to_plot([x, y]: [f64; 2]) -> (f64, f64) {
+pub(super) fn to_plot([x, y]: [f64; 2]) -> (f64, f64) {
     (-y, x)
 }
 
-fn range(values: impl Iterator<Item = f64> + Clone) -> Range<f64> {
+pub(super) fn range(values: impl Iterator<Item = f64> + Clone) -> Range<f64> {
     let low = values.clone().fold(f64::INFINITY, f64::min);
     let high = values.fold(f64::NEG_INFINITY, f64::max);
     low - MARGIN_M..high + MARGIN_M
 }
 
 /// Both ranges widened so that a metre is as long across as up.
-fn square(x: Range<f64>, y: Range<f64>, (width, height): (u32, u32)) -> (Range<f64>, Range<f64>) {
+pub(super) fn square(
+    x: Range<f64>,
+    y: Range<f64>,
+    (width, height): (u32, u32),
+) -> (Range<f64>, Range<f64>) {
     let metres_per_px =
         ((x.end - x.start) / f64::from(width)).max((y.end - y.start) / f64::from(height));
     let widened = |range: Range<f64>, px: u32| {

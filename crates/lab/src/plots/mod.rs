@@ -9,11 +9,13 @@ mod scatter;
 mod sigmas;
 mod study;
 mod style;
+mod traces;
 
 pub(crate) use car_rows::draw_car_rows;
 pub use position_curve::draw_position_curve;
 pub(crate) use rotation::draw_rotation;
 pub use study::draw_study;
+pub use traces::{Traces, draw_headings, draw_trajectories};
 
 use crate::{
     sample::{Estimate, Estimator, Target},

@@ -12,7 +12,7 @@ use crate::{
         geometry_msgs::Transform, roadwatch_msgs::ObjectArray, sensor_msgs::CameraInfo,
         tf2_msgs::TFMessage,
     },
-    scene_lines::LineCamera,
+    scene_lines::{LineCamera, LineRig},
 };
 use mcap::sans_io::indexed_reader::ReadOrder;
 use serde::de::DeserializeOwned;
@@ -158,35 +158,38 @@ impl Recorded {
     ///
     /// # Errors
     /// When a message cannot be read.
-    pub fn line_cameras(&self) -> Result<Vec<LineCamera>, RecordedError> {
-        let mut places: BTreeMap<String, Transform> = BTreeMap::new();
+    pub fn line_rig(&self) -> Result<LineRig, RecordedError> {
+        let mut places: BTreeMap<String, (String, Transform)> = BTreeMap::new();
         for topic in self.topics_of(TRANSFORMS) {
             for bytes in messages_of(&self.path, &topic, TRANSFORMS)? {
                 let message: TFMessage = self.decoded(&topic, &bytes)?;
                 let named = message.transforms.into_iter();
-                places.extend(named.map(|one| (one.child_frame_id, one.transform)));
+                places.extend(
+                    named.map(|one| (one.child_frame_id, (one.header.frame_id, one.transform))),
+                );
             }
         }
-        let mut cameras = Vec::new();
+        let mut rig = LineRig::default();
         for topic in self.topics_of(CAMERA_INFO) {
             let Some(bytes) = self.first(&topic)? else {
                 continue;
             };
             let camera_info: CameraInfo = self.decoded(&topic, &bytes)?;
             let frame = &camera_info.header.frame_id;
-            let (Some(name), Some(&base_from_optical)) =
+            let (Some(name), Some((base_frame, base_from_optical))) =
                 (frame.strip_suffix(OPTICAL_FRAME), places.get(frame))
             else {
                 tracing::warn!(%topic, %frame, "a camera without a place in the bag is left out");
                 continue;
             };
-            cameras.push(LineCamera {
+            rig.base_frame.clone_from(base_frame);
+            rig.cameras.push(LineCamera {
                 name: name.to_owned(),
-                base_from_optical,
+                base_from_optical: *base_from_optical,
                 camera_info,
             });
         }
-        Ok(cameras)
+        Ok(rig)
     }
 
     fn topics_of(&self, ros_type: &str) -> BTreeSet<String> {

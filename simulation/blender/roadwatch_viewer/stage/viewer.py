@@ -55,6 +55,7 @@ class Viewer:
 
     def set_rig(self, rig: Rig) -> None:
         """The stream's first line; cameras that are already up stay."""
+        self._placement.base_frame = rig.base_frame
         self.vehicle.set_rig(rig)
 
     def set_settings(self, settings: Settings) -> None:
