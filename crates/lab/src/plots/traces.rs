@@ -12,6 +12,8 @@ const SIZE_PX: (u32, u32) = (1400, 1000);
 const DOT_PX: i32 = 3;
 /// Names beside a picture; more of them would hide it.
 const MOST_NAMED: usize = 12;
+/// Room to the right of the last point, for the names.
+const LEGEND_SHARE: f64 = 1.12;
 /// Each hue is so far from the one before: the golden section of the circle spreads any number of them.
 const HUE_STEP: f64 = 0.618_033_988_749_895;
 
@@ -74,13 +76,10 @@ fn trajectories(traces: &Traces, (vehicle, frame): (&[[f64; 2]], &str), file: &P
         y: (y, &ahead),
     };
     let mut chart = style::meshed(&area, &axes)?;
-    let way = vehicle.iter().map(|place| to_plot(*place));
-    chart.draw_series([PathElement::new(
-        way.collect::<Vec<_>>(),
-        BLACK.stroke_width(3),
-    )])?;
     let flipped = |trace: &[[f64; 2]]| trace.iter().map(|place| to_plot(*place)).collect();
     draw_all(&mut chart, traces, flipped)?;
+    // On top: others drive where it drove.
+    chart.draw_series([PathElement::new(flipped(vehicle), BLACK.stroke_width(2))])?;
     Ok(picture.present()?)
 }
 
@@ -91,7 +90,7 @@ fn headings(traces: &Traces, file: &Path) -> Drawn {
     let last = traces.values().flatten().map(|[time, _]| *time);
     let axes = Axes {
         title: String::new(),
-        x: (0.0..last.fold(1.0, f64::max), "time, s"),
+        x: (0.0..LEGEND_SHARE * last.fold(1.0, f64::max), "time, s"),
         y: (
             -180.0..180.0,
             "heading, degrees, counter-clockwise from ahead",

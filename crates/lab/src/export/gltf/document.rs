@@ -10,6 +10,9 @@ const BINARY_CHUNK: &[u8; 4] = b"BIN\0";
 /// Chunks begin at multiples of this, and so do our numbers.
 const ALIGNMENT: usize = 4;
 /// Of components in `accessors`: single-precision numbers, and whole ones of 16 bits.
+/// What a view is for, where it is for vertices or indices.
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 const FLOAT: u32 = 5126;
 const UNSIGNED_SHORT: u32 = 5123;
 
@@ -75,11 +78,13 @@ impl Document {
         let positions = self.floats(&numbers, "VEC3", 3);
         self.accessors[positions]["min"] = json!(least);
         self.accessors[positions]["max"] = json!(most);
+        self.last_view_is(ARRAY_BUFFER);
         let bytes: Vec<u8> = indices
             .iter()
             .flat_map(|index| index.to_le_bytes())
             .collect();
         let view = self.view(&bytes);
+        self.last_view_is(ELEMENT_ARRAY_BUFFER);
         let indices = push(
             &mut self.accessors,
             json!({"bufferView": view, "componentType": UNSIGNED_SHORT, "count": indices.len(), "type": "SCALAR"}),
@@ -192,6 +197,12 @@ impl Document {
                 "bufferView": view, "componentType": FLOAT, "count": numbers.len() / width, "type": shape,
             }),
         )
+    }
+
+    fn last_view_is(&mut self, target: u32) {
+        if let Some(view) = self.views.last_mut() {
+            view["target"] = json!(target);
+        }
     }
 
     fn view(&mut self, bytes: &[u8]) -> usize {
