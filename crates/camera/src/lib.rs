@@ -33,7 +33,8 @@ pub use playback::{Due, Pace, Playback, PlaybackOptions, Repeat, Speed};
 pub use player::{Player, Recording};
 pub use raw_image::RawImage;
 pub use rig_dataset::{
-    DatasetError, DatasetFrame, DatasetImage, FramesProblem, RigDataset, RigProblem, read_rig_file,
+    DatasetError, DatasetFrame, DatasetImage, DatasetWriter, FramesProblem, NewFrame, RigDataset,
+    RigProblem, read_rig_file,
 };
 pub use span::Span;
 pub use still_image::StillImage;

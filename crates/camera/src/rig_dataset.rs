@@ -3,9 +3,11 @@
 mod error;
 mod frames_file;
 mod rig_file;
+mod writer;
 
 pub use error::{DatasetError, FramesProblem, RigProblem};
 pub use rig_file::read_rig_file;
+pub use writer::{DatasetWriter, NewFrame};
 
 use crate::{
     any_recording::AnyRecording,

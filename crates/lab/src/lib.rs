@@ -5,6 +5,7 @@
 
 pub mod baseline;
 pub mod bootstrap;
+pub mod collect;
 pub mod dataset_format;
 pub mod evaluate;
 pub mod export;

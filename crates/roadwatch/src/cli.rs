@@ -1,6 +1,7 @@
 //! The command line.
 
 mod calibrate;
+mod collect;
 mod evaluate;
 mod export;
 mod models;
@@ -12,6 +13,7 @@ pub use calibrate::{
     BoxesFrom, CalibrateCameraArgs, CalibrateCommand, CalibrateFocalArgs, CalibrateMountArgs,
     CalibrateRotationArgs, SolvedPart, TrustedPart,
 };
+pub use collect::CollectArgs;
 pub use evaluate::{EvaluateArgs, FormatName};
 pub use export::{ExportCommand, ExportFramesArgs, ExportGltfArgs, ExportSceneArgs, RecordingArgs};
 pub use models::{ModelsCommand, ModelsFetchArgs, ModelsListArgs, ModelsVerifyArgs};
@@ -63,6 +65,8 @@ pub enum Command {
     Table(TableCommand),
     /// Run the pipeline over a labelled dataset and score every method side by side.
     Evaluate(EvaluateArgs),
+    /// Run the daemon and keep what its cameras see as a dataset, with what was said of it.
+    Collect(Box<CollectArgs>),
     /// Make something of a recording: JSON lines, data frames, a 3D scene.
     #[command(subcommand)]
     Export(ExportCommand),
@@ -219,6 +223,7 @@ pub fn main_with(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 fn log_filter(cli: &Cli) -> String {
     let ros = match &cli.command {
         Command::Run(args) => Some(&args.ros),
+        Command::Collect(args) => Some(&args.run.ros),
         Command::Check(args) | Command::Graph(args) => Some(&args.ros),
         _ => None,
     };
@@ -238,6 +243,7 @@ fn run(command: Command, rosout: &RosoutTap) -> Result<(), Failure> {
         Command::Table(TableCommand::Inspect(args)) => commands::table::inspect(&args),
         Command::Table(TableCommand::Query(args)) => commands::table::query(&args),
         Command::Evaluate(args) => commands::evaluate::run(&args),
+        Command::Collect(args) => commands::collect::run(&args, rosout),
         Command::Export(command) => commands::export::run(&command),
         Command::Rotation(command) => commands::rotation::run(&command),
         Command::Study(args) => commands::study::run(&args),

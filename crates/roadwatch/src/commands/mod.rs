@@ -2,6 +2,7 @@
 
 pub mod calibrate;
 pub mod check;
+pub mod collect;
 pub mod evaluate;
 pub mod export;
 pub mod graph;

@@ -41,6 +41,31 @@ const STATUS_PERIOD: Duration = Duration::from_secs(1);
 /// # Errors
 /// Mistakes in the configuration, a bag or node that cannot be made, a bug in a stage.
 pub fn run(args: &RunArgs, rosout: &RosoutTap) -> Result<(), Failure> {
+    run_with(args, rosout, |_| Ok(None))
+}
+
+/// Another sink, beside those that the arguments ask for.
+pub(super) struct Beside {
+    /// It.
+    pub(super) sink: NamedSink,
+    /// Whether the run may end for its part.
+    pub(super) is_done: Box<dyn Fn() -> bool>,
+}
+
+/// The same with another sink, made once everything else is open.
+pub(super) fn run_beside(
+    args: &RunArgs,
+    rosout: &RosoutTap,
+    beside: impl FnOnce(&Session) -> Result<Beside, Failure>,
+) -> Result<(), Failure> {
+    run_with(args, rosout, |session| beside(session).map(Some))
+}
+
+fn run_with(
+    args: &RunArgs,
+    rosout: &RosoutTap,
+    beside: impl FnOnce(&Session) -> Result<Option<Beside>, Failure>,
+) -> Result<(), Failure> {
     let stop = stop_on_signals()?;
     let changes = Changes {
         dataset: args.dataset.clone().map(DatasetChoice::from),
@@ -48,8 +73,11 @@ pub fn run(args: &RunArgs, rosout: &RosoutTap) -> Result<(), Failure> {
     };
     let session = Session::open(&args.config, &changes, playback(args)?)?;
     let mut node = start_node(args, &session, rosout, &stop)?;
-    let stop_requested = || stop.load(Ordering::Relaxed);
     let mut sinks = sinks(args, &session, node.as_ref())?;
+    let (beside, is_done) = beside(&session)?.map(|one| (one.sink, one.is_done)).unzip();
+    sinks.extend(beside);
+    let is_done = || is_done.as_ref().is_some_and(|is_done| is_done());
+    let stop_requested = || stop.load(Ordering::Relaxed) || is_done();
     let scoring = if args.score {
         let scoring = Scoring::prepare(&session)?;
         sinks.push(scoring.sink());
@@ -66,16 +94,7 @@ pub fn run(args: &RunArgs, rosout: &RosoutTap) -> Result<(), Failure> {
     let _ego_listener = ego_listener
         .transpose()
         .context("the vehicle's motion cannot be listened to")?;
-    let session = match &node {
-        Some(node) => {
-            let listening = session.listening(node.node());
-            listening.context("the cameras' topics cannot be listened to")?
-        }
-        None => session,
-    };
-    if let Some(node) = &node {
-        hold_back(node, session.config.node.autostart, stop_requested);
-    }
+    let session = listening(session, node.as_ref(), stop_requested)?;
     let began = Instant::now();
     let running = session.start(sinks, options)?;
     let mut line = StatusLine::new(rig.cameras().len(), began);
@@ -118,6 +137,21 @@ fn start_node(
     }
     let started = DaemonNode::start(session, rosout, stop);
     Ok(Some(started.context("the ROS 2 node cannot be started")?))
+}
+
+/// With its cameras' topics listened to, once the node is active.
+fn listening(
+    session: Session,
+    node: Option<&DaemonNode>,
+    stop_requested: impl Fn() -> bool,
+) -> Result<Session, Failure> {
+    let Some(node) = node else {
+        return Ok(session);
+    };
+    let listening = session.listening(node.node());
+    let session = listening.context("the cameras' topics cannot be listened to")?;
+    hold_back(node, session.config.node.autostart, stop_requested);
+    Ok(session)
 }
 
 /// Returns when the node is active, or shall not be any more.
