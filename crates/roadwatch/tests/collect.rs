@@ -99,13 +99,17 @@ fn what_was_collected_is_evaluated_and_becomes_tables_and_rows_when_truth_arrive
     );
 
     truth_arrives(&field);
-    let report = within(folder.path(), "report");
+    is_evaluated_and_learnt_from(folder.path(), &config, &out);
+}
+
+fn is_evaluated_and_learnt_from(folder: &Path, config: &str, field: &str) {
+    let report = within(folder, "report");
     run_well(&[
         "evaluate",
         "--config",
-        &config,
+        config,
         "--dataset",
-        &out,
+        field,
         "--report",
         &report,
     ]);
@@ -115,18 +119,18 @@ fn what_was_collected_is_evaluated_and_becomes_tables_and_rows_when_truth_arrive
     .expect("JSON");
     let recall = report["detection"]["recall"].as_f64().expect("a share");
     assert!(recall > 0.8, "the same images as the demo's: {recall}");
-    let table = within(folder.path(), "front.rwtable");
+    let table = within(folder, "front.rwtable");
     run_well(&[
         "table",
         "build",
         "--from-dataset",
-        &out,
+        field,
         "--camera",
         "front",
         "-o",
         &table,
     ]);
-    let rows = within(folder.path(), "rows.csv");
+    let rows = within(folder, "rows.csv");
     let models = root().join("models");
     let (head, features) = (
         within(&models, "roadwatch_parts.onnx"),
@@ -135,7 +139,7 @@ fn what_was_collected_is_evaluated_and_becomes_tables_and_rows_when_truth_arrive
     run_well(&[
         "rotation",
         "rows",
-        &out,
+        field,
         "--model",
         &head,
         "--features",

@@ -152,7 +152,6 @@ fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<DatasetChoice>) -> C
             "missing: add a [detector] table with `model = \"….onnx\"`",
         );
     }
-    let timeout = scene.number("timeout_secs", 0.001..=LONGEST_SCENE_TIMEOUT_SECS);
     let config = Config {
         notes,
         node: node::read(node),
@@ -165,16 +164,21 @@ fn read(root: Reader<'_, '_>, notes: Notes, dataset: Option<DatasetChoice>) -> C
         rig: rig_config,
         locate: locate::read(locate),
         rotation: rotation::read(rotation),
-        scene_timeout: timeout.map_or(
-            PipelineOptions::DEFAULT_SCENE_TIMEOUT,
-            Duration::from_secs_f64,
-        ),
+        scene_timeout: read_timeout(scene),
     };
     root.finish();
     for reader in sections.into_iter().chain(camera_tables) {
         reader.finish();
     }
     config
+}
+
+fn read_timeout(scene: &Reader<'_, '_>) -> Duration {
+    let seconds = scene.number("timeout_secs", 0.001..=LONGEST_SCENE_TIMEOUT_SECS);
+    seconds.map_or(
+        PipelineOptions::DEFAULT_SCENE_TIMEOUT,
+        Duration::from_secs_f64,
+    )
 }
 
 /// One answer per camera of the rig; cameras that are not mentioned are looked at.
