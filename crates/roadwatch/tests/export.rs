@@ -301,3 +301,26 @@ fn an_address_that_is_taken_ends_the_start_with_a_message() {
         "{said}"
     );
 }
+
+#[test]
+fn mistakes_in_the_streams_table_are_said_each_with_its_key() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let cases = [
+        (
+            "listen = \"everywhere\"",
+            "scene_stream.listen: `everywhere` is no address with a port",
+        ),
+        (
+            "lisen = \"127.0.0.1:0\"",
+            "scene_stream.lisen: unknown key; did you mean `listen`?",
+        ),
+        ("", "scene_stream.listen: "),
+    ];
+    for (keys, expected) in cases {
+        let config = demo(folder.path(), |text| {
+            format!("{text}\n[scene_stream]\n{keys}\n")
+        });
+        let said = refusal(&["check", &config]);
+        assert!(said.contains(expected), "expected `{expected}` in:\n{said}");
+    }
+}

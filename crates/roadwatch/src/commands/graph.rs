@@ -50,6 +50,9 @@ pub fn run(args: &ConfigArgs) -> Result<(), Failure> {
     for topic in messages.topics() {
         say!("         {:<48} {}", topic.name, topic.kind.ros_type());
     }
+    if let Some(address) = config.scene_stream {
+        say!("stream   the scene as JSON lines on {address}");
+    }
     if config.node.annotated_images {
         for camera in session.rig.cameras() {
             let topic = annotated_topic(surface, camera.name.as_str());
