@@ -87,8 +87,8 @@ mod tests {
             &[0, 0, 0],       // to the next multiple of four
             &[1, 0, 0, 0, 0], // camera: the empty text is one zero
             &[0, 0, 0],
-            &[1, 0, 0, 0, 0], // ego_motion, too
-            &[0, 0, 0],
+            &[1, 0, 0, 0, 0],                // ego_motion, too
+            &[0; 7],                         // numbers of 64 bits stand at multiples of eight
             &[0; 6 * 8],                     // ego_pose: a place, x, y and z of no turn
             &[0, 0, 0, 0, 0, 0, 0xf0, 0x3f], // and its w, one
             &[0, 0, 0, 0],                   // no objects

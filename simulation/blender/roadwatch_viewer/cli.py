@@ -17,8 +17,9 @@ from .settings import Settings, load_settings
 DESCRIPTION = """\
 Roadwatch's scene in Blender: vehicles and people with their boxes, headings and identities, around the rig.
 
-  replay   a recording (roadwatch export scene --bag DIR -o scene.jsonl): keyframes, stills, clips, a .blend
-  follow   a running daemon ([scene_stream] in its configuration)
+  replay         a recording (roadwatch export scene --bag DIR -o scene.jsonl): stills, clips, a .blend
+  follow         a running daemon ([scene_stream] in its configuration)
+  side-by-side   one picture: a camera's image with boxes over it, and the scene from behind and above
 """
 EXAMPLES = """\
 examples:
@@ -26,6 +27,7 @@ examples:
   python -m roadwatch_viewer replay scene.jsonl --images DATA --view front --clip a.mp4 --from 2 --seconds 3
   python -m roadwatch_viewer replay scene.jsonl --save scene.blend        # then open it and press play
   python -m roadwatch_viewer follow 127.0.0.1:7600 --settings viewer.toml # change the file while it runs
+  python -m roadwatch_viewer side-by-side scene.jsonl --images DATA --camera front --at 3 -o picture.png
   blender --background --command roadwatch_viewer replay scene.jsonl --still a.png   # with the add-on
 """
 
@@ -56,7 +58,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="roadwatch_viewer", description=DESCRIPTION, epilog=EXAMPLES, formatter_class=raw
     )
-    commands = parser.add_subparsers(required=True, metavar="replay|follow")
+    commands = parser.add_subparsers(required=True, metavar="replay|follow|side-by-side")
     replay = commands.add_parser(
         "replay", help="put a recorded scene into Blender", epilog=EXAMPLES, formatter_class=raw
     )
@@ -84,16 +86,47 @@ def _parser() -> argparse.ArgumentParser:
     follow.add_argument("--report", type=Path, metavar="JSON", help="write how long scenes took, in ms")
     _add_outputs(follow)
     follow.set_defaults(run=_follow)
+    _add_side_by_side(commands)
     return parser
 
 
-def _add_outputs(command: argparse.ArgumentParser) -> None:
+def _add_side_by_side(commands: argparse._SubParsersAction) -> None:
+    command = commands.add_parser(
+        "side-by-side",
+        help="a picture of what a camera saw, and of the scene beside it",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    command.add_argument("recording", type=Path, help="scene.jsonl, as `roadwatch export scene` writes it")
+    command.add_argument(
+        "--images", type=Path, metavar="DATASET", required=True, help="rig dataset with the images"
+    )
+    command.add_argument("--camera", required=True, help="whose image is on the left")
+    command.add_argument(
+        "--at",
+        type=float,
+        default=0.0,
+        metavar="S",
+        help="its image nearest to this time, s since the first scene (0)",
+    )
+    command.add_argument(
+        "-o", "--output", type=Path, metavar="FILE", required=True, help="the picture, .png or .jpg"
+    )
+    _add_look(command)
+    command.set_defaults(run=_side_by_side, fps=None)
+
+
+def _add_look(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--settings", type=Path, metavar="TOML", help="what is drawn, how finely: see viewer.toml"
     )
     command.add_argument(
         "--view", default="overview", help="overview, top, or a camera of the rig (overview)"
     )
+
+
+def _add_outputs(command: argparse.ArgumentParser) -> None:
+    _add_look(command)
     command.add_argument("--still", type=Path, metavar="PNG", help="render a picture")
     command.add_argument("--save", type=Path, metavar="BLEND", help="save as a file of Blender's")
     command.add_argument("--fps", type=int, help="frames a second of Blender's clock (settings, 30)")
@@ -120,6 +153,13 @@ def _follow(typed: argparse.Namespace) -> None:
     outputs = Outputs(typed.view, Still(typed.still, 0.0) if typed.still else None, None, typed.save)
     settings = LiveSettings(typed.settings, _settings(typed))
     run_follow(Address.parse(typed.address), typed.seconds, typed.report, settings, outputs)
+
+
+def _side_by_side(typed: argparse.Namespace) -> None:
+    from .commands import Still, run_side_by_side
+
+    picture = Still(typed.output, typed.at)
+    run_side_by_side(typed.recording, typed.images, typed.camera, typed.view, _settings(typed), picture)
 
 
 def _settings(typed: argparse.Namespace) -> Settings:

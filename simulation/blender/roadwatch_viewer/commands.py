@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     import bpy
 
     from .live import LiveSession
+    from .stage.pictures import Photographer
 
 STEP_WAIT_S = 0.05
 SETTINGS_CHECK_S = 1.0
@@ -54,6 +55,31 @@ class Outputs:
 
 def run_replay(recording: Path, images: Path | None, settings: Settings, outputs: Outputs) -> None:
     """Puts a recording into an empty Blender file and makes what is wanted of it."""
+    photographer = _load(recording, images, settings)
+    if outputs.still is not None:
+        photographer.still(outputs.view, outputs.still.at_s, outputs.still.path)
+        print(outputs.still.path)
+    if outputs.clip is not None:
+        clip = outputs.clip
+        photographer.clip(outputs.view, clip.from_s, clip.seconds, clip.path, Progress("pictures"))
+        print(clip.path)
+    if outputs.blend is not None:
+        _save(outputs.blend)
+
+
+def run_side_by_side(
+    recording: Path, images: Path, camera: str, view: str, settings: Settings, picture: Still
+) -> None:
+    """Makes one picture of a camera's image with boxes over it and, beside it, of the scene in Blender."""
+    photographer = _load(recording, images, settings)
+    from .stage.side_by_side import side_by_side
+
+    side_by_side(photographer, camera, view, picture.at_s, picture.path)
+    print(picture.path)
+
+
+def _load(recording: Path, images: Path | None, settings: Settings) -> Photographer:
+    """A recording in an empty Blender file, with the images of a rig dataset where one is given."""
     read = read_recording(recording)
     cameras = {}
     if images is not None:
@@ -66,16 +92,7 @@ def run_replay(recording: Path, images: Path | None, settings: Settings, outputs
 
     viewer = load_replay(scene, read, settings, Progress("scenes"))
     _warn_distortion(read.rig)
-    photographer = Photographer(scene, viewer, read, settings, cameras)
-    if outputs.still is not None:
-        photographer.still(outputs.view, outputs.still.at_s, outputs.still.path)
-        print(outputs.still.path)
-    if outputs.clip is not None:
-        clip = outputs.clip
-        photographer.clip(outputs.view, clip.from_s, clip.seconds, clip.path, Progress("pictures"))
-        print(clip.path)
-    if outputs.blend is not None:
-        _save(outputs.blend)
+    return Photographer(scene, viewer, read, settings, cameras)
 
 
 def run_follow(
@@ -176,7 +193,8 @@ def _finish_live(scene: bpy.types.Scene, session: LiveSession, settings: Setting
 def _write_report(path: Path, session: LiveSession) -> None:
     follower = session.follower
     counted = {"overtaken": follower.overtaken, "lines_left_out": follower.warnings.count}
-    said = {"address": str(follower.address), **session.delays.report(), **counted}
+    drawn = {"first_seq": session.first_seq, "last_seq": session.last_seq}
+    said = {"address": str(follower.address), **drawn, **session.delays.report(), **counted}
     make_folder_of(path)
     try:
         path.write_text(json.dumps(said, indent=2) + "\n", encoding="utf-8")

@@ -10,24 +10,41 @@ from pathlib import Path
 
 from .errors import ViewerError
 
+CLIP_SUFFIX = ".mp4"
+
 
 @dataclass(frozen=True)
 class CameraImages:
-    """One camera's images: their stamps, rising, and their frame numbers."""
+    """One camera's images with their stamps, rising: a folder of pictures, or a clip of one frame per stamp.
 
-    folder: Path
+    The number of an image is its file's, or its place in the clip counted from 1: as Blender counts both.
+    """
+
+    stored: Path
     stamps_ns: tuple[int, ...]
-    frames: tuple[int, ...]
+    numbers: tuple[int, ...]
+
+    @property
+    def is_clip(self) -> bool:
+        """Whether all images are in one file."""
+        return self.stored.suffix == CLIP_SUFFIX
 
     def nearest(self, stamp_ns: int) -> int:
-        """The frame number of the image nearest in time; of two as near, the earlier one."""
+        """The number of the image nearest in time; of two as near, the earlier one."""
+        return self.numbers[self._nearest_place(stamp_ns)]
+
+    def nearest_stamp_ns(self, stamp_ns: int) -> int:
+        """When that image was captured."""
+        return self.stamps_ns[self._nearest_place(stamp_ns)]
+
+    def file(self, number: int) -> Path:
+        """The file that has an image."""
+        return self.stored if self.is_clip else self.stored / f"{number:04d}.jpg"
+
+    def _nearest_place(self, stamp_ns: int) -> int:
         after = bisect_left(self.stamps_ns, stamp_ns)
         near = [place for place in (after - 1, after) if 0 <= place < len(self.stamps_ns)]
-        return self.frames[min(near, key=lambda place: abs(self.stamps_ns[place] - stamp_ns))]
-
-    def path(self, frame: int) -> Path:
-        """Where a frame's image lies."""
-        return self.folder / f"{frame:04d}.jpg"
+        return min(near, key=lambda place: abs(self.stamps_ns[place] - stamp_ns))
 
 
 def read_images(dataset: Path) -> dict[str, CameraImages]:
@@ -43,18 +60,22 @@ def read_images(dataset: Path) -> dict[str, CameraImages]:
         raise ViewerError(
             f"{dataset} is no rig dataset: cannot read {frames.name} ({error.strerror})"
         ) from error
-    cameras = {
-        name: CameraImages(dataset / name, *map(tuple, zip(*sorted(found), strict=True)))
-        for name, found in stamps.items()
-    }
+    cameras = {name: _images(dataset, name, sorted(found)) for name, found in stamps.items()}
     with_images = {
-        name: images for name, images in cameras.items() if images.path(images.frames[0]).is_file()
+        name: images for name, images in cameras.items() if images.file(images.numbers[0]).is_file()
     }
     if not with_images:
-        raise ViewerError(
-            f"{dataset}: no <camera>/0000.jpg in it; a dataset of clips has to be unpacked first"
-        )
+        raise ViewerError(f"{dataset}: neither <camera>{CLIP_SUFFIX} nor <camera>/0000.jpg in it")
     return with_images
+
+
+def _images(dataset: Path, camera: str, found: list[tuple[int, int]]) -> CameraImages:
+    """Of stamps (ns) with frame numbers. Where there are both, the clip counts, as for the daemon."""
+    stamps_ns, frames = zip(*found, strict=True)
+    clip = dataset / f"{camera}{CLIP_SUFFIX}"
+    if clip.is_file():
+        return CameraImages(clip, stamps_ns, tuple(range(1, len(found) + 1)))
+    return CameraImages(dataset / camera, stamps_ns, frames)
 
 
 def _stamps(line: str, place: str) -> list[tuple[str, tuple[int, int]]]:

@@ -21,6 +21,8 @@ class LiveSession:
         self.follower, self.viewer = follower, viewer
         self.delays = Delays()
         self.drawn_objects = 0
+        self.first_seq: int | None = None
+        self.last_seq: int | None = None
         self.view_layer = view_layer
         self._pace = Pace()
         self._pending: Received | None = None
@@ -42,6 +44,9 @@ class LiveSession:
         now_s = time.monotonic()
         # Only now: a scene that could not be drawn is drawn by the next step, on a viewer made anew.
         self._pending = None
+        self.last_seq = received.scene.seq
+        if self.first_seq is None:
+            self.first_seq = self.last_seq
         self.delays.note(
             from_line_s=now_s - received.received_s,
             from_stamp_s=(time.time_ns() - received.scene.stamp_ns) * NS,

@@ -191,5 +191,5 @@ def test_a_folder_without_images_is_refused(tmp_path):
     with pytest.raises(ViewerError, match="no rig dataset"):
         read_images(tmp_path)
     (tmp_path / "frames.jsonl").write_text(json.dumps({"frame": 0, "stamp": {"front": 1.5}}) + "\n")
-    with pytest.raises(ViewerError, match="0000.jpg"):
+    with pytest.raises(ViewerError, match="neither <camera>.mp4 nor <camera>/0000.jpg"):
         read_images(tmp_path)

@@ -16,13 +16,19 @@ PATH = "background_images[0].image_user.frame_offset"
 
 
 def show_behind(camera: bpy.types.Object, images: CameraImages, stamps_ns: Mapping[float, int]) -> None:
-    """Puts the camera's images behind it; `stamps_ns` says the scene's stamp at each frame of Blender's."""
+    """Puts the camera's images behind it; `stamps_ns` says the scene's stamp at each frame of Blender's.
+
+    Raises ViewerError for a clip that has another number of frames than stamps.
+    """
     lens = camera.data
-    first = bpy.data.images.load(str(images.path(images.frames[0]).resolve()))
-    first.source = "SEQUENCE"
+    stored = _load(images.file(images.numbers[0]))
+    if images.is_clip:
+        _check_length(stored, images)
+    else:
+        stored.source = "SEQUENCE"
     lens.show_background_images = True
     behind = lens.background_images.new()
-    behind.image, behind.alpha, behind.frame_method = first, 1.0, "STRETCH"
+    behind.image, behind.alpha, behind.frame_method = stored, 1.0, "STRETCH"
     user = behind.image_user
     # A sequence one image long never advances by itself: the offset alone says which image is seen.
     user.frame_start, user.frame_duration, user.use_auto_refresh = 1, 1, True
@@ -32,10 +38,10 @@ def show_behind(camera: bpy.types.Object, images: CameraImages, stamps_ns: Mappi
     recorder.write()
 
 
-def lay_over(picture: Path, image: Path) -> None:
-    """Lays a rendered picture with a transparent ground over a camera's image, in place."""
-    over, size = _read(picture, None)
-    under, _ = _read(image, size)
+def lay_over(picture: Path, images: CameraImages, number: int) -> None:
+    """Lays a rendered picture with a transparent ground over one of a camera's images, in place."""
+    over, size = _read(picture, 1, None)
+    under, _ = _read(images.file(number), number, size)
     alpha = over[..., 3:]
     colour = over[..., :3] * alpha + under[..., :3] * (1.0 - alpha)
     made = bpy.data.images.new("laid over", *size)
@@ -45,16 +51,31 @@ def lay_over(picture: Path, image: Path) -> None:
     bpy.data.images.remove(made)
 
 
-def _read(path: Path, size: tuple[int, int] | None) -> tuple[np.ndarray, tuple[int, int]]:
-    """Pixels as stored (h, w, 4), 0 to 1, lowest row first, scaled to `size` where one is given."""
-    try:
-        image = bpy.data.images.load(str(path.resolve()))
-    except RuntimeError as error:
-        raise ViewerError(f"cannot read the image {path}: {error}") from error
-    if size is not None and tuple(image.size) != size:
-        image.scale(*size)
+def _read(path: Path, number: int, size: tuple[int, int] | None) -> tuple[np.ndarray, tuple[int, int]]:
+    """Pixels as stored (h, w, 4), 0 to 1, lowest row first, scaled to `size` where one is given.
+
+    Of a clip those of the frame with this number, counted from 1.
+    """
+    image = _load(path)
+    # Also where the size stays: scaling is what makes Blender decode a certain frame of a clip.
+    image.scale(*(size or image.size), frame=number)
     width, height = image.size
     pixels = np.empty(width * height * 4, dtype=np.float32)
     image.pixels.foreach_get(pixels)
     bpy.data.images.remove(image)
     return pixels.reshape(height, width, 4), (width, height)
+
+
+def _load(path: Path) -> bpy.types.Image:
+    try:
+        return bpy.data.images.load(str(path.resolve()))
+    except RuntimeError as error:
+        raise ViewerError(f"cannot read the image {path}: {error}") from error
+
+
+def _check_length(clip: bpy.types.Image, images: CameraImages) -> None:
+    if clip.frame_duration != len(images.stamps_ns):
+        raise ViewerError(
+            f"{images.stored} has {clip.frame_duration} frames, "
+            f"and {len(images.stamps_ns)} stamps in frames.jsonl"
+        )

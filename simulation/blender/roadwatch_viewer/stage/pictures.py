@@ -14,6 +14,7 @@ from ..errors import ViewerError, make_folder_of
 from ..reading import Recording
 from ..replay import FIRST_FRAME, set_time
 from ..settings import Settings
+from .editing import edit
 from .images import lay_over, show_behind
 from .render import prepare, render_still, show_view, silence
 from .viewer import Viewer
@@ -40,10 +41,12 @@ class Photographer:
             if name in self.viewer.vehicle.cameras:
                 show_behind(self.viewer.vehicle.cameras[name], images, stamps)
 
-    def still(self, view: str, since_s: float, path: Path) -> None:
-        """A PNG of a view at a time since the first scene."""
+    def still(self, view: str, since_s: float, path: Path, size_px: tuple[int, int] | None = None) -> None:
+        """A PNG of a view at a time since the first scene; in its own size unless one is given."""
         self._check_time(since_s)
         has_image = self._set_view(view)
+        if size_px is not None:
+            self.scene.render.resolution_x, self.scene.render.resolution_y = size_px
         self._take(view, since_s, path, has_image)
 
     def clip(self, view: str, from_s: float, seconds: float, path: Path, report: Report) -> None:
@@ -60,12 +63,19 @@ class Photographer:
             render = self.scene.render
             encode(paths, path, fps, (render.resolution_x, render.resolution_y))
 
+    def image_time_s(self, camera: str, since_s: float) -> float:
+        """When the camera's image nearest to a time was captured, both since the first scene."""
+        self._check_time(since_s)
+        captured_ns = self.images[camera].nearest_stamp_ns(self._stamp_ns(since_s))
+        captured_s = (captured_ns - self.recording.scenes[0].stamp_ns) * NS
+        return min(max(captured_s, 0.0), self.recording.seconds)
+
     def _take(self, view: str, since_s: float, path: Path, has_image: bool) -> None:
         set_time(self.scene, since_s, self.settings.fps)
         render_still(self.scene, path)
         if has_image:
             images = self.images[view]
-            lay_over(path, images.path(images.nearest(self._stamp_ns(since_s))))
+            lay_over(path, images, images.nearest(self._stamp_ns(since_s)))
 
     def _set_view(self, view: str) -> bool:
         """Through a camera with images, only boxes and arrows are drawn: whether it is one."""
@@ -88,18 +98,13 @@ class Photographer:
 def encode(paths: list[Path], clip: Path, fps: int, size_px: tuple[int, int]) -> None:
     """Makes an MP4 of pictures, with Blender's own encoder."""
     make_folder_of(clip)
-    scene = bpy.data.scenes.new("Roadwatch clip")
-    try:
-        editor = scene.sequence_editor_create()
-        strips = editor.strips if hasattr(editor, "strips") else editor.sequences
+    with edit("Roadwatch clip", size_px) as (scene, strips):
         strip = strips.new_image("pictures", str(paths[0]), channel=1, frame_start=1)
         for path in paths[1:]:
             strip.elements.append(path.name)
         scene.frame_start, scene.frame_end = 1, len(paths)
-        scene.view_settings.view_transform = "Standard"
         render = scene.render
         render.fps, render.fps_base = fps, 1.0
-        render.resolution_x, render.resolution_y, render.resolution_percentage = *size_px, 100
         if hasattr(render.image_settings, "media_type"):
             # Since Blender 5 formats are sorted by what they are for.
             render.image_settings.media_type = "VIDEO"
@@ -109,7 +114,5 @@ def encode(paths: list[Path], clip: Path, fps: int, size_px: tuple[int, int]) ->
         render.filepath = str(clip.resolve())
         with silence():
             bpy.ops.render.render(animation=True, scene=scene.name)
-    finally:
-        bpy.data.scenes.remove(scene)
     if not clip.is_file():
         raise ViewerError(f"Blender wrote no clip to {clip}: is its name one that ends with .mp4?")

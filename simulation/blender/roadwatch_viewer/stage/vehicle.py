@@ -62,6 +62,11 @@ class Vehicle:
         """What `look_through` takes."""
         return [*self.views, *self.cameras]
 
+    def size_px(self, camera: str) -> tuple[int, int]:
+        """Width and height of a rig's camera's images."""
+        width_px, height_px = self.cameras[camera][SIZE_KEY]
+        return width_px, height_px
+
     def _new_camera(self, camera: RigCamera) -> bpy.types.Object:
         lens = bpy.data.cameras.new(camera.name)
         lens.sensor_fit = "HORIZONTAL"
