@@ -26,6 +26,7 @@ def missing() -> str | None:
     try:
         import bpy  # noqa: F401
         import mcap_ros2  # noqa: F401
+        import roadwatch_viewer  # noqa: F401
     except ImportError as error:
         return f"{error}: see README.md"
     return None
