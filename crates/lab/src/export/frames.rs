@@ -1,15 +1,12 @@
 //! The locational and the rotational data frame (section III-B): what a camera's frame said of places and of headings.
 
 use super::data_frame::{Field, Kind, Value};
-use nalgebra::{Isometry3, Point3, Vector2};
+use nalgebra::{Point3, Vector2};
 use roadwatch_ros::msg::{
     builtin_interfaces::Time,
     roadwatch_msgs::{Object, ObjectArray},
 };
 use roadwatch_rotate::{RayAngle, Yaw};
-
-/// What `ego_motion` says when nobody tells where the vehicle is.
-const NOBODY_TELLS: &str = "none";
 
 const fn field(name: &'static str, kind: Kind, about: &'static str) -> Field {
     Field { name, about, kind }
@@ -123,8 +120,7 @@ pub const ROTATIONAL: [Field; 12] = [
 
 /// Rows of the locational data frame.
 pub fn locational_rows(array: &ObjectArray) -> impl Iterator<Item = Vec<Value>> {
-    let knows_ego = array.ego_motion != NOBODY_TELLS;
-    let odom_from_base = knows_ego.then(|| Isometry3::from(&array.ego_pose));
+    let odom_from_base = array.odom_from_base();
     array.objects.iter().map(move |object| {
         let place = Point3::new(object.position.x, object.position.y, object.position.z);
         let in_odom = odom_from_base.map(|isometry| isometry * place);
@@ -272,7 +268,7 @@ mod tests {
         assert_eq!(of("odom_x_m"), Value::Real(Some(110.0)));
         assert_eq!(of("cov_yy_m2"), Value::Real(Some(5.0)));
         assert_eq!(of("cov_zz_m2"), Value::Real(Some(9.0)));
-        told.ego_motion = NOBODY_TELLS.to_owned();
+        told.ego_motion = "none".to_owned();
         let row = locational_rows(&told).next().expect("a row");
         assert_eq!(value(&LOCATIONAL, &row, "odom_x_m"), Value::Real(None));
     }

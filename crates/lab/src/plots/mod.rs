@@ -15,6 +15,7 @@ pub(crate) use car_rows::draw_car_rows;
 pub use position_curve::draw_position_curve;
 pub(crate) use rotation::draw_rotation;
 pub use study::draw_study;
+pub(crate) use traces::HUE_STEP;
 pub use traces::{Traces, draw_headings, draw_trajectories};
 
 use crate::{

@@ -15,7 +15,7 @@ const MOST_NAMED: usize = 12;
 /// Room to the right of the last point, for the names.
 const LEGEND_SHARE: f64 = 1.12;
 /// Each hue is so far from the one before: the golden section of the circle spreads any number of them.
-const HUE_STEP: f64 = 0.618_033_988_749_895;
+pub(crate) const HUE_STEP: f64 = 0.618_033_988_749_895;
 
 /// Points of every track, in order of time.
 pub type Traces = BTreeMap<i64, Vec<[f64; 2]>>;

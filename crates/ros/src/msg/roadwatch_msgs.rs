@@ -6,6 +6,8 @@ use super::{
     std_msgs::Header,
     unique_identifier_msgs::UUID,
 };
+use nalgebra::Isometry3;
+use roadwatch_core::EgoKnowledge;
 use serde::{Deserialize, Serialize};
 
 /// A key component of an object, where the image shows it.
@@ -101,4 +103,13 @@ pub struct ObjectArray {
     pub ego_pose: Pose,
     /// Empty when nothing was seen.
     pub objects: Vec<Object>,
+}
+
+impl ObjectArray {
+    /// Where base_link stands in odom; `None` while nobody tells.
+    #[must_use]
+    pub fn odom_from_base(&self) -> Option<Isometry3<f64>> {
+        let told = self.ego_motion != EgoKnowledge::None.as_str();
+        told.then(|| (&self.ego_pose).into())
+    }
 }

@@ -24,8 +24,6 @@ use std::{
     io::{self, Write},
 };
 
-/// What `ego_motion` says when nobody tells where the vehicle is.
-const NOBODY_TELLS: &str = "none";
 /// The vehicle is drawn as a block of this size over base_link, metres: what it really looks like, nobody says.
 const EGO: SizeLwh = SizeLwh {
     length_m: 4.5,
@@ -36,8 +34,6 @@ const GREY: [f32; 3] = [0.25, 0.25, 0.28];
 const GRID: [f32; 3] = [0.08, 0.08, 0.08];
 /// Ground around the vehicle's way, metres.
 const AROUND_M: f32 = 80.0;
-/// Each hue is so far from the one before: the golden section of the circle spreads any number of them.
-const HUE_STEP: f64 = 0.618_033_988_749_895;
 
 /// Scenes on their way to a file.
 #[derive(Debug)]
@@ -99,10 +95,9 @@ impl GltfScenes {
         }
         let at = self.times.len();
         self.times.push(time);
-        let mut ego = Isometry3::from(&scene.ego_pose);
-        if scene.ego_motion == NOBODY_TELLS {
-            ego = Isometry3::identity();
-        } else {
+        let told = scene.odom_from_base();
+        let ego = told.unwrap_or_default();
+        if told.is_some() {
             self.origin.get_or_insert(ego.translation.vector);
         }
         let origin = self.origin.unwrap_or_default();
@@ -330,7 +325,7 @@ fn quaternion(rotation: &UnitQuaternion<f64>) -> [f32; 4] {
 
 /// The colour of an identity, linear RGB: another hue for each, all as strong.
 fn colour(id: u64) -> [f32; 3] {
-    let hue = (id as f64 * HUE_STEP).fract() * 6.0;
+    let hue = (id as f64 * crate::plots::HUE_STEP).fract() * 6.0;
     let channel = |offset: f64| {
         let distance = ((hue + offset).rem_euclid(6.0) - 3.0).abs() - 1.0;
         (0.05 + 0.75 * distance.clamp(0.0, 1.0)) as f32

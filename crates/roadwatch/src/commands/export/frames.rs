@@ -12,9 +12,6 @@ use roadwatch_lab::{
 use roadwatch_ros::{Recorded, msg::roadwatch_msgs::ObjectArray, scene_lines::LineRig};
 use std::{fs, path::Path};
 
-/// What `ego_motion` says when nobody tells where the vehicle is.
-const NOBODY_TELLS: &str = "none";
-
 /// Writes both data frames and their pictures.
 pub(super) fn run(args: &ExportFramesArgs) -> Result<(), Failure> {
     let recorded = Recorded::open(&args.recording.bag).context("nothing can be exported")?;
@@ -136,8 +133,9 @@ impl Seen {
     fn add(&mut self, array: &ObjectArray) {
         let stamp = array.header.stamp;
         let time_s = f64::from(stamp.sec) + f64::from(stamp.nanosec) / 1e9;
-        self.knows_ego |= array.ego_motion != NOBODY_TELLS;
-        let ego = nalgebra::Isometry3::from(&array.ego_pose);
+        let told = array.odom_from_base();
+        self.knows_ego |= told.is_some();
+        let ego = told.unwrap_or_default();
         let above = |point: nalgebra::Point3<f64>| [point.x, point.y];
         self.vehicle
             .push((time_s, above(ego * nalgebra::Point3::origin())));
