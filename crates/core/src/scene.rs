@@ -44,7 +44,7 @@ impl Phase {
 pub struct Motion {
     /// How far it is believed in.
     pub phase: Phase,
-    /// Capture time of the first frame it was seen in.
+    /// Capture time of the frame that it became known by. It stays when an earlier frame comes late: names are made of it.
     pub first_seen: Timestamp,
     /// What it is, by all frames.
     pub class: ObjectClass,

@@ -165,7 +165,6 @@ impl Object {
             evidence: evidence.clone(),
             after,
         });
-        self.first_seen = at;
         self.replay(1);
         self.forget_steps();
         true

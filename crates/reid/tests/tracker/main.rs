@@ -101,6 +101,20 @@ fn a_late_frame_is_put_where_it_belongs() {
 }
 
 #[test]
+fn what_is_seen_first_keeps_its_name_when_an_earlier_frame_comes_late() {
+    let (mut watched, still) = (Watched::new(), ego(0.0, 0.0));
+    let looks = [(0, 100), (1, 60), (0, 200)];
+    // Where two cameras see it.
+    let places = [(12.0, 7.0)];
+    let tracks = looks.map(|(camera, millis)| {
+        let seen = watched.look(camera, millis, &still, &places);
+        seen.items[0].clone()
+    });
+    assert!(tracks.iter().all(|one| one.id == tracks[0].id));
+    assert!(tracks.iter().all(|one| motion(one).first_seen == at(100)));
+}
+
+#[test]
 fn a_parked_car_stands_while_the_vehicle_drives_past_and_turns() {
     let mut watched = Watched::new();
     let parked = [(20.0, 4.0)];
