@@ -64,8 +64,8 @@ fn solve(part: &[Pair], taken: &mut [Option<usize>]) {
         sorted(part, |pair| pair.row),
         sorted(part, |pair| pair.column),
     );
-    // With columns to spare, one for each row: who takes one stays alone.
-    let mut weights = Matrix::new(rows.len(), columns.len() + rows.len(), 0_i64);
+    // A column for each row at least: who takes one that gains nothing stays alone.
+    let mut weights = Matrix::new(rows.len(), columns.len().max(rows.len()), 0_i64);
     let place = |list: &[usize], one| list.partition_point(|&other| other < one);
     for pair in part {
         let at = (place(&rows, pair.row), place(&columns, pair.column));

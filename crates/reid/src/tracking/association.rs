@@ -1,7 +1,7 @@
 //! Which detection of a frame is which object: by place, by image, by class.
 
 use super::{
-    filter::{Filter, Fix},
+    filter::Fix,
     object::Object,
     view::{Expected, View},
 };
@@ -76,10 +76,14 @@ pub(super) fn by_image(
     outlook: &[Outlook],
     detections: &[Detection],
 ) -> Vec<Option<usize>> {
+    let expected = outlook.iter().enumerate();
+    let expected: Vec<(usize, BoxPx)> = expected
+        .filter_map(|(column, outlook)| Some((column, outlook.expected?.box_px)))
+        .collect();
     let mut pairs = Vec::new();
     for (row, detection) in detections.iter().enumerate() {
-        for (column, outlook) in outlook.iter().enumerate() {
-            let overlap = outlook.overlap(&detection.box_px);
+        for &(column, box_px) in &expected {
+            let overlap = box_px.iou(&detection.box_px);
             if overlap >= LEAST_OVERLAP && may_be_one(objects[column].class(), &detection.class) {
                 let gain = f64::from(overlap);
                 pairs.push(Pair { row, column, gain });
@@ -114,15 +118,15 @@ pub(super) struct Candidates<'a> {
 impl Candidates<'_> {
     /// The tracked object that each located one is; `None` of who is new.
     pub(super) fn assign(&self, seen: &[Oriented], fixes: &[Option<Fix>]) -> Vec<Option<usize>> {
-        let mut beliefs: Vec<Option<Filter>> = vec![None; self.objects.len()];
         let mut pairs = Vec::new();
         for (row, (one, fix)) in seen.iter().zip(fixes).enumerate() {
             let detection = &one.located.detection;
-            let away = fix.as_ref().map(|fix| (fix.place - self.view.eye).norm());
+            let near = fix.as_ref().map(|fix| self.near(fix));
             for (column, outlook) in self.outlook.iter().enumerate() {
                 let overlap = outlook.overlap(&detection.box_px);
                 // Most are nowhere near, and cost no more than this.
-                if overlap == 0.0 && !is_near(outlook, fix.as_ref().zip(away)) {
+                let is_near = || near.is_some_and(|near| near.holds(outlook));
+                if overlap == 0.0 && !is_near() {
                     continue;
                 }
                 let object = &self.objects[column];
@@ -131,7 +135,7 @@ impl Candidates<'_> {
                 }
                 let class = -2.0 * object.share_of(&detection.class).max(LEAST_SHARE).ln();
                 let by_place = match fix {
-                    Some(fix) => self.by_place(fix, column, overlap, &mut beliefs[column]),
+                    Some(fix) => self.by_place(fix, object, overlap),
                     // Where it is nobody knows, so that it is in the image what it was.
                     None => (overlap >= LEAST_OVERLAP).then_some(0.0),
                 };
@@ -149,27 +153,34 @@ impl Candidates<'_> {
     }
 
     /// How much a place surprises; `None` when too much.
-    fn by_place(
-        &self,
-        fix: &Fix,
-        column: usize,
-        overlap: f32,
-        belief: &mut Option<Filter>,
-    ) -> Option<f64> {
-        let object = &self.objects[column];
-        let belief = belief.get_or_insert_with(|| object.belief_at(self.view.at));
-        let squared = belief.surprise(fix);
+    fn by_place(&self, fix: &Fix, object: &Object, overlap: f32) -> Option<f64> {
+        let squared = object.surprise_at(self.view.at, fix);
         let most = match overlap >= SURE_OVERLAP {
             true => MOST_SURPRISE_OVERLAPPING,
             false => MOST_SURPRISE,
         };
         (squared <= most).then_some(squared)
     }
+
+    /// Around a place.
+    fn near(&self, fix: &Fix) -> Near {
+        let away_m = (fix.place - self.view.eye).norm();
+        Near {
+            place: fix.place,
+            squared_m2: NEAR_M.max(NEAR_SHARE * away_m).powi(2),
+        }
+    }
 }
 
-/// Whether a place, so far away from the camera, is near enough to ask how near.
-fn is_near(outlook: &Outlook, fix: Option<(&Fix, f64)>) -> bool {
-    fix.is_some_and(|(fix, away)| {
-        (outlook.place - fix.place).norm() < NEAR_M.max(NEAR_SHARE * away)
-    })
+/// Where to look for partners.
+#[derive(Clone, Copy)]
+struct Near {
+    place: Vector2<f64>,
+    squared_m2: f64,
+}
+
+impl Near {
+    fn holds(&self, outlook: &Outlook) -> bool {
+        (outlook.place - self.place).norm_squared() < self.squared_m2
+    }
 }

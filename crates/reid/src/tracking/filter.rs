@@ -1,6 +1,6 @@
 //! What is believed of one object: an extended Kalman filter over place, motion, heading and what its box gets wrong.
 
-use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
+use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector3};
 use roadwatch_core::angle::wrapped;
 use std::f64::consts::PI;
 
@@ -194,7 +194,7 @@ impl Filter {
         step[(VELOCITY, VELOCITY + 1)] -= turn * seconds;
         step[(VELOCITY + 1, VELOCITY)] += turn * seconds;
         mean[HEADING] = wrapped(mean[HEADING]);
-        let mut covariance = step * self.covariance * step.transpose();
+        let mut covariance = spread_by(&step, &spread_by(&step, &self.covariance).transpose());
         let grown = |kept: f64, variance: f64| variance * (1.0 - kept * kept);
         let speed = velocity.norm();
         let moving = STANDING_SHARE + (1.0 - STANDING_SHARE) * (speed / MOVING_M_S).min(1.0);
@@ -220,11 +220,20 @@ impl Filter {
         self.covariance.fixed_view::<2, 2>(0, 0) + self.lasting
     }
 
-    /// Squared Mahalanobis distance of a fix; infinite where it has none. Another camera's fixes do not err alike, so all
-    /// of the fix's own covariance counts.
-    pub(super) fn surprise(&self, fix: &Fix) -> f64 {
-        let covariance = self.covariance.fixed_view::<2, 2>(0, 0) + fix.noise();
-        squared(&(fix.place - self.position()), &covariance)
+    /// Squared Mahalanobis distance of a fix some time later, as [`Filter::predict`] has it; infinite where it has none. Another
+    /// camera's fixes do not err alike, so all of the fix's own covariance counts.
+    pub(super) fn surprise_after(&self, seconds: f64, fix: &Fix) -> f64 {
+        let seconds = seconds.max(0.0);
+        // Place, velocity and acceleration are what a later place is made of.
+        let step = Vector3::new(1.0, seconds, seconds * seconds / 2.0);
+        let mut covariance = fix.noise();
+        for (one, share) in step.iter().enumerate() {
+            for (other, other_share) in step.iter().enumerate() {
+                let part = self.covariance.fixed_view::<2, 2>(2 * one, 2 * other);
+                covariance += part * (share * other_share);
+            }
+        }
+        squared(&(fix.place - self.position_after(seconds)), &covariance)
     }
 
     /// Takes in where it was seen.
@@ -324,6 +333,21 @@ impl Filter {
         self.mean.iter().all(|one| one.is_finite())
             && diagonal.iter().all(|one| one.is_finite() && *one >= 0.0)
     }
+}
+
+/// A covariance times a transposed step, most of which is nothing.
+fn spread_by(step: &StateCovariance, covariance: &StateCovariance) -> StateCovariance {
+    let mut product = StateCovariance::zeros();
+    for from in 0..DIMS {
+        for to in 0..DIMS {
+            let share = step[(to, from)];
+            if share != 0.0 {
+                let mut column = product.column_mut(to);
+                column += covariance.column(from) * share;
+            }
+        }
+    }
+    product
 }
 
 /// Squared Mahalanobis distance; infinite where the covariance has no inverse.

@@ -307,6 +307,13 @@ impl Object {
         belief
     }
 
+    /// How much a place at a moment surprises, in squared deviations.
+    pub(super) fn surprise_at(&self, at: Timestamp, fix: &Fix) -> f64 {
+        let step = self.step_before(at);
+        let seconds = at.saturating_since(step.at).as_secs_f64();
+        step.after.surprise_after(seconds, fix)
+    }
+
     /// Where it will be at a moment, without the cost of how well that is known.
     pub(super) fn solid_at(&self, at: Timestamp) -> Solid {
         let step = self.step_before(at);
@@ -338,9 +345,7 @@ impl Object {
             .back()
             .is_none_or(|(last, _)| at.saturating_since(*last) >= TRAIL_EVERY);
         if due {
-            let place = self.belief_at(at).position();
-            self.trail
-                .push_back((at, Point3::new(place.x, place.y, self.height_m)));
+            self.trail.push_back((at, self.solid_at(at).center));
             if self.trail.len() > TRAIL_POINTS {
                 self.trail.pop_front();
             }
