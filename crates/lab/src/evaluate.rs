@@ -3,10 +3,10 @@
 use crate::{
     baseline::Baseline,
     bootstrap::Intervals,
-    identity::{IdentityReport, SeenTrack, SeenTruth, Sighting},
+    identity::{IdentityReport, IdentityScore, Judge, SeenTrack, SeenTruth, Sighting},
     matching::{Matches, TruthFilter, match_image},
     motion::{MotionReport, TrueMotion, VelocityError},
-    recorder::{Answer, Recorded},
+    recorder::{Answer, Recorded, Recording},
     report::{DetectionScore, Report},
     sample::{Estimator, Sample, Target},
     sample_table::SampleTable,
@@ -16,7 +16,7 @@ use crate::{
 use roadwatch_camera::RigDataset;
 use roadwatch_core::{CameraId, Detection, Known, Locator, Method, Rig, Timestamp};
 use std::{
-    collections::{BTreeMap, HashMap},
+    collections::{BTreeMap, BTreeSet, HashMap},
     sync::Arc,
 };
 
@@ -82,14 +82,15 @@ struct Matched<'a> {
 #[must_use]
 pub fn evaluate(
     evaluation: &Evaluation<'_>,
-    recorded: &[Recorded],
+    recording: &Recording,
     methods: &[MethodUnderTest],
     baselines: Vec<Baseline>,
 ) -> Report {
-    let matched = evaluation.matched(recorded);
+    let motion = TrueMotion::of(evaluation.dataset, evaluation.truth);
+    let matched = evaluation.matched(&recording.frames, &motion);
     let identity_baselines = baselines.into_iter().map(|baseline| {
-        let (name, renamed) = baseline.rename(recorded);
-        let sightings = evaluation.matched(&renamed).sightings;
+        let (name, renamed) = baseline.rename(&recording.frames);
+        let sightings = evaluation.matched(&renamed, &motion).sightings;
         (name, IdentityReport::of(&sightings))
     });
     let identity_baselines = identity_baselines.collect();
@@ -112,6 +113,8 @@ pub fn evaluate(
     let of_method =
         |tested: &MethodUnderTest| (tested.method, figures(Estimator::By(tested.method)));
     let estimators = table.estimators().into_iter();
+    let judge = evaluation.judge(&motion, &matched.sightings);
+    let scene_identity = IdentityScore::of(&judge.moments(&recording.scenes));
     Report {
         frames: matched.perceived,
         frames_missing: matched.images - matched.perceived,
@@ -121,7 +124,10 @@ pub fn evaluate(
         single,
         methods: methods.iter().map(of_method).collect(),
         unavailable,
-        identity: IdentityReport::of(&matched.sightings),
+        identity: IdentityReport {
+            scene: scene_identity,
+            ..IdentityReport::of(&matched.sightings)
+        },
         identity_baselines,
         motion: MotionReport::of(&matched.velocities),
         intervals: estimators
@@ -152,23 +158,23 @@ impl Evaluation<'_> {
     /// Every detection that was taken for an object that is scored, with that object.
     #[must_use]
     pub fn pairs(&self, recorded: &[Recorded]) -> Vec<(Detection, Arc<Target>)> {
-        let pairs = self.matched(recorded).pairs.into_iter();
+        let motion = TrueMotion::of(self.dataset, self.truth);
+        let pairs = self.matched(recorded, &motion).pairs.into_iter();
         pairs
             .map(|pair| (pair.detection.clone(), pair.target))
             .collect()
     }
 
-    fn matched<'r>(&self, recorded: &'r [Recorded]) -> Matched<'r> {
+    fn matched<'r>(&self, recorded: &'r [Recorded], motion: &TrueMotion) -> Matched<'r> {
         let by_moment: HashMap<_, _> = recorded
             .iter()
             .map(|frame| ((frame.camera, frame.captured_at), frame))
             .collect();
         let mut matched = Matched::default();
-        let motion = TrueMotion::of(self.dataset, self.truth);
         for (camera, captured_at, number) in self.images() {
             matched.images += 1;
             match by_moment.get(&(camera, captured_at)) {
-                Some(frame) => self.match_frame(&mut matched, (frame, number), motion.as_ref()),
+                Some(frame) => self.match_frame(&mut matched, (frame, number), motion),
                 None if self.lost_images == LostImages::Ignore => {}
                 None => self.miss_all(&mut matched, camera, number),
             }
@@ -189,7 +195,7 @@ impl Evaluation<'_> {
         &self,
         matched: &mut Matched<'r>,
         (frame, number): (&'r Recorded, u64),
-        motion: Option<&TrueMotion>,
+        motion: &TrueMotion,
     ) {
         let camera = self.rig.camera(frame.camera);
         let labels = self.truth.labels(number, camera.name.as_str());
@@ -207,7 +213,7 @@ impl Evaluation<'_> {
             let track = detection.and_then(|&at| frame.tracks.get(at));
             matched
                 .velocities
-                .extend(track.zip(motion).and_then(|(track, motion)| {
+                .extend(track.and_then(|track| {
                     motion.judge((&object.id, number), track, frame.captured_at)
                 }));
             let target = Arc::new(Target::new(object, camera, detection.is_some()));
@@ -225,6 +231,26 @@ impl Evaluation<'_> {
 }
 
 impl Evaluation<'_> {
+    /// What the identities of scenes are judged by.
+    fn judge<'a>(&'a self, motion: &'a TrueMotion, sightings: &'a [Sighting]) -> Judge<'a> {
+        let mut labelled: BTreeMap<u64, BTreeSet<&str>> = BTreeMap::new();
+        let mut frames = BTreeMap::new();
+        for (camera, captured_at, number) in self.images() {
+            let camera = self.rig.camera(camera).name.as_str();
+            let objects = self.truth.objects(number, camera).iter();
+            let scored = objects.filter(|object| self.filter.may_stand_for_scored(&object.class));
+            let names = labelled.entry(number).or_default();
+            names.extend(scored.map(|object| object.id.as_str()));
+            frames.insert(captured_at, number);
+        }
+        Judge {
+            motion,
+            sightings,
+            labelled,
+            frames,
+        }
+    }
+
     /// What is scored of identities in one image: objects, the tracks that were found of them, and which is which.
     fn sighting(&self, frame: &Recorded, number: u64, matches: &Matches) -> Sighting {
         let camera = self.rig.camera(frame.camera).name.as_str();

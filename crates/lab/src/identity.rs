@@ -6,11 +6,14 @@
 mod clear;
 mod global;
 mod hota;
+mod published;
 mod sighting;
 
 use serde::Serialize;
 use std::collections::BTreeMap;
 
+pub(crate) use published::Judge;
+pub use published::PublishedScene;
 pub use sighting::{IdentityReport, MIN_TIMES_FOUND, SeenTrack, SeenTruth, Sighting};
 
 /// Below this similarity a found object is not taken for a true one, by CLEAR MOT and identity F1.

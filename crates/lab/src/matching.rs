@@ -50,7 +50,7 @@ impl TruthFilter {
     }
 
     /// Whether something of this class, seen or labelled, may stand for an object that is scored.
-    fn may_stand_for_scored(&self, class: &str) -> bool {
+    pub(crate) fn may_stand_for_scored(&self, class: &str) -> bool {
         let confused = || {
             CONFUSED.contains(&class) && self.classes.iter().any(|c| CONFUSED.contains(&c.as_str()))
         };

@@ -34,7 +34,7 @@ pub struct MotionReport {
 
 /// What moves how, by the labels.
 pub(crate) struct TrueMotion {
-    /// By object and frame: where and when, in world.
+    /// By object and frame: where and when, in odom.
     places: BTreeMap<(String, u64), (Timestamp, Vector2<f64>)>,
     ego: EgoMotion,
 }
@@ -48,29 +48,34 @@ pub(crate) struct VelocityError {
 }
 
 impl TrueMotion {
-    /// Of a dataset that says where the vehicle was; `None` of one that does not.
-    pub(crate) fn of(dataset: &RigDataset, truth: &Truth) -> Option<Self> {
+    /// Of a dataset; of one that does not say where the vehicle was, against the vehicle.
+    pub(crate) fn of(dataset: &RigDataset, truth: &Truth) -> Self {
         let ego = dataset.ego_motion();
-        if ego.counts().taken == 0 {
-            return None;
-        }
         let mut places = BTreeMap::new();
         for frame in dataset.frames() {
             for (camera, stamp) in dataset.cameras().iter().zip(&frame.stamps) {
                 let Some(at) = *stamp else {
                     continue;
                 };
-                let world_from_base = ego.at(at).odom_from_base;
+                let odom_from_base = ego.at(at).odom_from_base;
                 for object in truth.objects(frame.number, camera.name.as_str()) {
-                    let place = (world_from_base * object.center).coords.coords.xy();
+                    let place = (odom_from_base * object.center).coords.coords.xy();
                     places.insert((object.id.clone(), frame.number), (at, place));
                 }
             }
         }
-        Some(Self { places, ego })
+        Self { places, ego }
     }
 
-    /// The velocity of an object in a frame, in world: between the frames before and after.
+    /// Where an object of a frame is at a moment near it, in odom; `None` of one that is not labelled then.
+    pub(crate) fn place(&self, id: &str, frame: u64, at: Timestamp) -> Option<Vector2<f64>> {
+        let (labelled_at, place) = self.places.get(&(id.to_owned(), frame))?;
+        let seconds = (at.as_nanos() - labelled_at.as_nanos()) as f64 / 1e9;
+        let velocity = self.velocity(id, frame).unwrap_or_default();
+        Some(place + velocity * seconds)
+    }
+
+    /// The velocity of an object in a frame, in odom: between the frames before and after.
     fn velocity(&self, id: &str, frame: u64) -> Option<Vector2<f64>> {
         let place = |frame: u64| self.places.get(&(id.to_owned(), frame));
         let (before, after) = (place(frame.checked_sub(1)?)?, place(frame + 1)?);
@@ -85,6 +90,10 @@ impl TrueMotion {
         track: &Track,
         at: Timestamp,
     ) -> Option<VelocityError> {
+        if self.ego.counts().taken == 0 {
+            // Over ground is what it is measured against.
+            return None;
+        }
         let motion = track.motion.as_ref()?;
         if motion.phase == Phase::Tentative {
             // Two sights say nothing of a velocity, as its covariance says.

@@ -1,5 +1,6 @@
 //! A sink that keeps what was perceived, for scoring afterwards.
 
+use crate::identity::PublishedScene;
 use roadwatch_core::{
     CameraId, Detection, Heading, Known, Location, Output, RigCamera, Sink, SinkError,
     SlopeEvidence, Timestamp, Track,
@@ -71,31 +72,38 @@ impl Recorded {
 /// A place, and the heading that was decided for.
 pub type Answer = (Location, Option<Heading>);
 
+/// Everything that was published, in its order.
+#[derive(Debug, Clone, Default)]
+pub struct Recording {
+    /// What was made of each frame.
+    pub frames: Vec<Recorded>,
+    /// The fused scenes.
+    pub scenes: Vec<PublishedScene>,
+}
+
 /// The sink. Clones share what is kept.
 #[derive(Debug, Clone, Default)]
-pub struct Recorder(Arc<Mutex<Vec<Recorded>>>);
+pub struct Recorder(Arc<Mutex<Recording>>);
 
 impl Recorder {
-    /// Takes everything kept so far, in order of publishing.
+    /// Takes everything kept so far.
     #[must_use]
-    pub fn take(&self) -> Vec<Recorded> {
+    pub fn take(&self) -> Recording {
         std::mem::take(&mut *self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
 impl Sink for Recorder {
     fn publish(&mut self, output: &Output) -> Result<(), SinkError> {
-        if let Output::Camera(perceived) = output {
-            let recorded = Recorded {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        match output {
+            Output::Camera(perceived) => kept.frames.push(Recorded {
                 camera: perceived.tracks.frame.camera,
                 captured_at: perceived.tracks.frame.captured_at,
                 tracks: perceived.tracks.items.clone(),
                 unlocated: perceived.unlocated.clone(),
-            };
-            self.0
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-                .push(recorded);
+            }),
+            Output::Scene(scene) => kept.scenes.push(PublishedScene::from(&**scene)),
         }
         Ok(())
     }

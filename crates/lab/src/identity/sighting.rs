@@ -59,6 +59,8 @@ pub struct IdentityReport {
     /// All cameras together: one object is one, whoever sees it.
     #[serde(flatten)]
     pub rig: IdentityScore,
+    /// The published scenes: each object once, those included that no camera finds at the moment.
+    pub scene: IdentityScore,
     /// Share of found objects, one for each round, that were found under more than one identity at once.
     pub duplicate_share: Option<f64>,
     /// Each camera by itself, added up.
@@ -82,20 +84,33 @@ impl IdentityReport {
         let rig: Vec<Moment> = rounds.values().map(|round| names.in_rig(round)).collect();
         Self {
             rig: IdentityScore::of(&rig),
+            scene: IdentityScore::default(),
             duplicate_share: duplicates(&rounds),
             per_camera: IdentityScore::of(&per_camera),
         }
     }
 }
 
-/// The images without objects that were found too seldom, and without what was found of those.
-fn without_brief(sightings: &[Sighting]) -> Vec<Sighting> {
+/// How often each object was found, by its name in the labels.
+pub(super) fn times_found(sightings: &[Sighting]) -> BTreeMap<&str, usize> {
     let mut times: BTreeMap<&str, usize> = BTreeMap::new();
     for sighting in sightings {
         for &(truth, _) in &sighting.pairs {
             *times.entry(sighting.truths[truth].id.as_str()).or_default() += 1;
         }
     }
+    times
+}
+
+/// How alike two places are, 0 to 1, so far apart and at such a distance of the true one.
+pub(super) fn alike(off_m: f64, range_m: f64) -> f64 {
+    let most = 2.0 * NEAR_M.max(NEAR_SHARE * range_m);
+    (1.0 - off_m / most).max(0.0)
+}
+
+/// The images without objects that were found too seldom, and without what was found of those.
+fn without_brief(sightings: &[Sighting]) -> Vec<Sighting> {
+    let times = times_found(sightings);
     let stays = |truth: &SeenTruth| {
         times
             .get(truth.id.as_str())
@@ -188,13 +203,11 @@ impl Names {
         }
         let similarity = truths.values().map(|truth| {
             let (truth, range_m) = middle(truth);
-            let most = 2.0 * NEAR_M.max(NEAR_SHARE * range_m);
-            let alike = found.values().map(|found| {
+            let row = found.values().map(|found| {
                 let (found, _) = middle(found);
-                let off_m = (found[0] - truth[0]).hypot(found[1] - truth[1]);
-                (1.0 - off_m / most).max(0.0)
+                alike((found[0] - truth[0]).hypot(found[1] - truth[1]), range_m)
             });
-            alike.collect()
+            row.collect()
         });
         Moment {
             similarity: similarity.collect(),

@@ -12,7 +12,7 @@ use anyhow::{Context as _, anyhow};
 use roadwatch_camera::{Pace, PlaybackOptions, Repeat};
 use roadwatch_core::Method;
 use roadwatch_lab::{
-    Baseline, Evaluation, LatencyMs, LostImages, MethodUnderTest, Recorded, Recorder, Report,
+    Baseline, Evaluation, LatencyMs, LostImages, MethodUnderTest, Recorder, Recording, Report,
     Truth, TruthFilter, evaluate::evaluate,
 };
 use roadwatch_pipeline::{NamedSink, Overload, PipelineOptions, Running};
@@ -58,12 +58,12 @@ pub fn run(args: &EvaluateArgs) -> Result<(), Failure> {
         frame_limit: args.frames,
     };
     let images = evaluation.images().count() as u64;
-    let (recorded, latency) = perceive(session, Progress::new(images, "images"))?;
+    let (recording, latency) = perceive(session, Progress::new(images, "images"))?;
     let report = Report {
         latency: Some(latency),
         ..evaluate(
             &evaluation,
-            &recorded,
+            &recording,
             &methods(&config),
             baselines(&config),
         )
@@ -84,7 +84,7 @@ pub fn run(args: &EvaluateArgs) -> Result<(), Failure> {
 pub(super) fn perceive(
     session: Session,
     mut progress: Progress,
-) -> Result<(Vec<Recorded>, LatencyMs), Failure> {
+) -> Result<(Recording, LatencyMs), Failure> {
     let rig = Arc::clone(&session.rig);
     let recorder = Recorder::default();
     let sink = NamedSink {

@@ -74,6 +74,6 @@ fn detected(
     let session = Session::open(config, &chosen.into(), playback)?;
     let images = opened.dataset.frames().len() as u64;
     eprintln!("detecting in {}", opened.scene.folder.display());
-    let (recorded, _) = perceive(session, Progress::new(images, "images"))?;
-    Ok(seen_by_detector(opened, &recorded))
+    let (recording, _) = perceive(session, Progress::new(images, "images"))?;
+    Ok(seen_by_detector(opened, &recording.frames))
 }

@@ -158,7 +158,7 @@ fn detected(
     let progress = Progress::new(per_camera * rig.cameras().len() as u64, "images");
     let (perceived, _) = perceive(session, progress)?;
     let mut all = vec![Frames::new(); rig.cameras().len()];
-    for recorded in perceived {
+    for recorded in perceived.frames {
         let boxes = recorded.detections();
         let boxes = boxes.filter_map(|detection| {
             let size = wanted_size(args, &detection.class, &sizes)?;
