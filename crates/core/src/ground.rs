@@ -14,6 +14,9 @@ pub struct SlopeEvidence {
     pub information: Matrix2<f64>,
     /// The information times the slopes.
     pub pull: Vector2<f64>,
+    /// How uneven the ground is, against what a locator is configured to expect: every deviation of a slope is that many times
+    /// the configured one. 1 where nobody said anything.
+    pub unevenness: f64,
 }
 
 impl Default for SlopeEvidence {
@@ -21,6 +24,7 @@ impl Default for SlopeEvidence {
         Self {
             information: Matrix2::zeros(),
             pull: Vector2::zeros(),
+            unevenness: 1.0,
         }
     }
 }
@@ -41,4 +45,8 @@ pub struct GroundReading {
     /// What it is off, metres, when the ground on this camera's side of the rig deviates from the plane by one
     /// standard deviation: the same slope for everything that this camera sees.
     pub by_side_m: f64,
+    /// The part of `std_dev_m` that is of the box and the object's size alone, metres.
+    pub by_box_m: f64,
+    /// Standard deviation of the height there, metres, of ground as uneven as it is configured to be.
+    pub configured_m: f64,
 }

@@ -1,11 +1,14 @@
 //! The slopes of the ground under the rig, from what boxes in all directions say of it.
 
+use crate::unevenness::Unevenness;
 use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 use roadwatch_core::{CameraId, GroundReading, SlopeEvidence, Timestamp, TrackId};
 use std::{collections::BTreeMap, time::Duration};
 
 /// What has faded to this share of its weight is forgotten.
 const FORGOTTEN_SHARE: f64 = 0.01;
+/// For about how long the ground stays as uneven as it was: some hundred metres of one road.
+const UNEVENNESS_LASTS: Duration = Duration::from_secs(60);
 
 /// Remembers what each object says of the ground: a plane with one slope ahead and one to the left
 /// (docs/method.md, section 3, "the ground").
@@ -16,17 +19,22 @@ const FORGOTTEN_SHARE: f64 = 0.01;
 /// than expected on the whole; those that one camera sees, ground that leaves the plane on that side. So a whole
 /// street of cars ahead says no more of the slope than streets are flat, and both sides together tell it from
 /// the cars' size.
+///
+/// How much readings scatter tells how uneven the ground is. Each object counts for one reading, also when it is gone.
 #[derive(Debug)]
 pub(crate) struct GroundMemory {
     length: Duration,
     objects: BTreeMap<(CameraId, TrackId), Evidence>,
+    /// What objects said of the ground's unevenness that are gone, and when.
+    gone: (Unevenness, Timestamp),
 }
 
-/// What one object says of both slopes, of the mean size, and of its side's own slope.
+/// What one object says of both slopes, of the mean size, and of its side's own slope; and of how uneven the ground is.
 #[derive(Clone, Copy, Debug)]
 struct Evidence {
     information: Matrix4<f64>,
     pull: Vector4<f64>,
+    unevenness: Unevenness,
     at: Timestamp,
 }
 
@@ -36,6 +44,7 @@ impl GroundMemory {
         Self {
             length,
             objects: BTreeMap::new(),
+            gone: (Unevenness::NOTHING, Timestamp::from_nanos(0)),
         }
     }
 
@@ -56,6 +65,7 @@ impl GroundMemory {
             Evidence {
                 information: before.information * kept + new.information * (1.0 - kept),
                 pull: before.pull * kept + new.pull * (1.0 - kept),
+                unevenness: before.unevenness.blend(kept, &new.unevenness, 1.0 - kept),
                 at,
             }
         });
@@ -64,9 +74,17 @@ impl GroundMemory {
 
     /// Forgets what has faded by `now`.
     pub(crate) fn forget(&mut self, now: Timestamp) {
-        let length = self.length;
-        self.objects
-            .retain(|_, evidence| faded(evidence, now, length) > FORGOTTEN_SHARE);
+        let gone = self.objects.extract_if(.., |_, evidence| {
+            share_left(evidence.at, now, self.length) <= FORGOTTEN_SHARE
+        });
+        for (_, evidence) in gone {
+            let (sum, at) = self.gone;
+            let left = share_left(at, evidence.at, UNEVENNESS_LASTS);
+            self.gone = (
+                sum.blend(left, &evidence.unevenness, 1.0),
+                evidence.at.max(at),
+            );
+        }
     }
 
     /// All objects together, at a moment.
@@ -76,15 +94,19 @@ impl GroundMemory {
             let side = sides.entry(*camera).or_insert_with(Side::default);
             side.add(evidence, self.kept(evidence, now));
         }
+        let left = share_left(self.gone.1, now, UNEVENNESS_LASTS);
+        let gone = self.gone.0.blend(left, &Unevenness::NOTHING, 0.0);
+        let here = self.objects.values();
         Ground {
             memory: self,
             now,
             sides,
+            unevenness: here.fold(gone, |sum, one| sum.blend(1.0, &one.unevenness, 1.0)),
         }
     }
 
     fn kept(&self, evidence: &Evidence, now: Timestamp) -> f64 {
-        faded(evidence, now, self.length)
+        share_left(evidence.at, now, self.length)
     }
 }
 
@@ -100,6 +122,7 @@ impl Evidence {
         Self {
             information: by * by.transpose() * precision,
             pull: by * (reading.height_m * precision),
+            unevenness: Unevenness::of(reading),
             at,
         }
     }
@@ -110,6 +133,7 @@ pub(crate) struct Ground<'a> {
     memory: &'a GroundMemory,
     now: Timestamp,
     sides: BTreeMap<CameraId, Side>,
+    unevenness: Unevenness,
 }
 
 /// What the objects say that one camera sees.
@@ -158,13 +182,26 @@ impl Ground<'_> {
         SlopeEvidence {
             information: slopes - shared * shared.transpose() / size,
             pull: pull.xy() - shared * (pull.z / size),
+            unevenness: self.unevenness_without(object),
         }
+    }
+
+    /// How uneven all objects but this one say that the ground is.
+    fn unevenness_without(&self, object: (CameraId, TrackId)) -> f64 {
+        if self.memory.length.is_zero() {
+            return 1.0;
+        }
+        let own = self.memory.objects.get(&object);
+        let others = own.map_or(self.unevenness, |own| {
+            self.unevenness.blend(1.0, &own.unevenness, -1.0)
+        });
+        others.expected()
     }
 }
 
-/// The share of its weight that evidence has at a moment.
-fn faded(evidence: &Evidence, now: Timestamp, length: Duration) -> f64 {
-    let age = now.saturating_since(evidence.at);
+/// The share of its weight that evidence of a moment has at a later one.
+fn share_left(at: Timestamp, now: Timestamp, length: Duration) -> f64 {
+    let age = now.saturating_since(at);
     (-age.as_secs_f64() / length.as_secs_f64()).exp()
 }
 
@@ -194,6 +231,8 @@ mod tests {
             std_dev_m: 0.1,
             by_mean_size_m,
             by_side_m: 0.003 * x.hypot(y),
+            by_box_m: 0.1,
+            configured_m: 0.014 * x.hypot(y),
         }
     }
 

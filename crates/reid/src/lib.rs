@@ -8,6 +8,7 @@ pub mod by_camera;
 mod ground_memory;
 pub mod rule;
 pub mod tracking;
+mod unevenness;
 
 pub use by_bearing::ByBearing;
 pub use by_camera::ByCamera;

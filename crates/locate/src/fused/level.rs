@@ -11,9 +11,9 @@ const MEAN_SIZE_SHARE: f64 = 0.05;
 /// the next street's grade. Nobody measured it.
 const SIDE_SHARE: f64 = 0.5;
 /// A box that tells less than this share of what was known of the ground already has told nothing.
-const LEAST_GAIN: f64 = 0.05;
-/// Ground this many standard deviations from where it was expected is no ground: something hides the foot, or
-/// the object is of another size.
+const LEAST_GAIN: f64 = 0.002;
+/// Ground this many standard deviations from where it is configured to be is no ground: something hides the foot, or
+/// the object is of another size. Of less uneven ground, what is that many deviations off counts for that much less.
 const MOST_STD_DEVS: f64 = 3.0;
 
 /// What is known of the ground before a box comes.
@@ -23,6 +23,8 @@ pub(super) struct Ground {
     z_m: f64,
     /// Of its height anywhere, metres.
     height_std_m: f64,
+    /// Of the slope to an object as it is configured, the plane's and its own, rise per metre.
+    configured_std: f64,
     /// Of the slope to an object beside the plane's, rise per metre.
     local_std: f64,
     /// The plane's rise per metre ahead and to the left of base_link.
@@ -40,6 +42,7 @@ impl Ground {
         Self {
             z_m,
             height_std_m,
+            configured_std: slope_std,
             local_std,
             slopes: Vector2::zeros(),
             covariance: Matrix2::identity() * plane_variance,
@@ -48,14 +51,12 @@ impl Ground {
 
     /// With what others say of the slopes; of level ground.
     pub(super) fn learnt(&self, evidence: &SlopeEvidence) -> Self {
-        if evidence.information == Matrix2::zeros() {
-            return *self;
-        }
-        let expected = Matrix2::identity() / self.covariance[(0, 0)];
-        let Some(covariance) = (expected + evidence.information).try_inverse() else {
-            return *self;
-        };
+        let expected = self.covariance * evidence.unevenness.powi(2);
+        let precision = expected.try_inverse().unwrap_or_default();
+        let learnt = (precision + evidence.information).try_inverse();
+        let covariance = learnt.unwrap_or(expected);
         Self {
+            local_std: self.local_std * evidence.unevenness,
             slopes: covariance * evidence.pull,
             covariance,
             ..*self
@@ -94,21 +95,27 @@ impl Ground {
         if !(gain >= LEAST_GAIN && gain.is_finite()) {
             return None;
         }
+        let expected_std_m = self.std_m(place, distance_m);
+        let by_box_m = expected_std_m / gain.sqrt();
         // By itself: the expected height divided out again.
-        let alone = mean / variance / gain;
-        if alone.abs() > MOST_STD_DEVS * (1.0 + gain.recip()).sqrt() {
+        let off_m = expected_std_m * (mean / variance / gain);
+        let configured_m = self.configured_std * distance_m;
+        let height_m = self.slopes.dot(&place) + off_m;
+        let std_devs = |height_m: f64, ground_m: f64| height_m.abs() / ground_m.hypot(by_box_m);
+        if std_devs(height_m, configured_m.hypot(self.height_std_m)) > MOST_STD_DEVS {
             return None;
         }
-        let expected_std_m = self.std_m(place, distance_m);
         let local_m2 = self.own_variance(distance_m);
-        let variance_m2 = expected_std_m.powi(2) / gain + (1.0 - SIDE_SHARE) * local_m2;
+        let std_dev_m = by_box_m.hypot(((1.0 - SIDE_SHARE) * local_m2).sqrt());
         Some(GroundReading {
             place,
-            height_m: self.slopes.dot(&place) + expected_std_m * alone,
-            std_dev_m: variance_m2.sqrt(),
+            height_m,
+            std_dev_m: std_dev_m * (std_devs(off_m, expected_std_m) / MOST_STD_DEVS).max(1.0),
             // All objects higher by a share seem nearer by it, where the same ray is higher above the ground.
             by_mean_size_m: MEAN_SIZE_SHARE * eye_height_m,
             by_side_m: (SIDE_SHARE * local_m2).sqrt(),
+            by_box_m: by_box_m.hypot(self.height_std_m),
+            configured_m,
         })
     }
 }
