@@ -22,6 +22,9 @@ const NO_OVERLAP: f64 = 8.0;
 /// A class costs by the share of its votes among all that an object had, as squared deviations do: detectors waver between
 /// car and truck, and who wavered may again. No class is rarer than this: it costs eight.
 const LEAST_SHARE: f64 = 0.02;
+/// One that it hardly ever had costs more by how much higher or lower things of it are, as a share, in squares of this deviation:
+/// a bus before a hidden car is not the car.
+const HEIGHT_STD: f64 = 0.25;
 /// What it costs to begin a new object.
 const NEW_OBJECT: f64 = 24.0;
 /// Nobody looks for partners further away than this, metres …
@@ -101,7 +104,7 @@ pub(super) fn fix(located: &Located, view: &View<'_>, ego: &Ego) -> Option<(Fix,
     let covariance = (ego.steady_from_base * location.covariance).matrix;
     let fix = Fix {
         place: center.coords.coords.xy(),
-        covariance: covariance.fixed_view::<2, 2>(0, 0) * view.doubt(&located.detection.box_px),
+        covariance: covariance.fixed_view::<2, 2>(0, 0) * view.doubt(located),
     };
     let numbers = fix.place.iter().chain(fix.covariance.iter());
     let is_whole = numbers.chain([&center.z()]).all(|one| one.is_finite());
@@ -133,7 +136,7 @@ impl Candidates<'_> {
                 if !may_be_one(object.class(), &detection.class) {
                     continue;
                 }
-                let class = -2.0 * object.share_of(&detection.class).max(LEAST_SHARE).ln();
+                let class = by_class(object, &one.located);
                 let by_place = match fix {
                     Some(fix) => self.by_place(fix, object, overlap),
                     // Where it is nobody knows, so that it is in the image what it was.
@@ -170,6 +173,16 @@ impl Candidates<'_> {
             squared_m2: NEAR_M.max(NEAR_SHARE * away_m).powi(2),
         }
     }
+}
+
+/// What it costs that an object is of the class that a frame says.
+fn by_class(object: &Object, located: &Located) -> f64 {
+    let share = object.share_of(&located.detection.class);
+    if share > LEAST_SHARE {
+        return -2.0 * share.ln();
+    }
+    let higher = (located.location.size.height_m / object.size().height_m).ln();
+    -2.0 * LEAST_SHARE.ln() + (higher / HEIGHT_STD).powi(2)
 }
 
 /// Where to look for partners.

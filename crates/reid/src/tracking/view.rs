@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Point3, Vector2, Vector3};
 use roadwatch_core::{
-    BoxPx, CameraId, Ego, RigCamera, SizeLwh, Timestamp, camera_model::Pixel, space::Point,
+    BoxPx, CameraId, Ego, Located, RigCamera, SizeLwh, Timestamp, camera_model::Pixel, space::Point,
 };
 use std::time::Duration;
 
@@ -19,6 +19,8 @@ const LEAST_HEIGHT_PX: f32 = 14.0;
 const EDGE_PX: f32 = 4.0;
 /// Variance of a place by a box that one edge cuts off, against what its locator says …
 const CUT_ONCE: f64 = 2.5;
+/// … by one that a side cuts down to less than the object is wide: what is seen is a bonnet, not as high as its roof …
+const CUT_NARROW: f64 = 6.0;
 /// … and by one that two cut off, a side and the bottom: little is left of the object.
 const CUT_TWICE: f64 = 14.0;
 
@@ -78,18 +80,19 @@ impl<'a> View<'a> {
     }
 
     /// How much more the variance of a place is than its box alone says: what the image's edges cut off says nothing.
-    pub(super) fn doubt(&self, box_px: &BoxPx) -> f64 {
+    pub(super) fn doubt(&self, located: &Located) -> f64 {
+        let (box_px, whole) = (&located.detection.box_px, located.location.size);
         let size = self.rig_camera.model.size;
         let (width, height) = (size.width_px as f32, size.height_px as f32);
-        let cut = [
-            box_px.x_min < EDGE_PX,
-            box_px.x_max > width - EDGE_PX,
-            box_px.y_max > height - EDGE_PX,
-        ];
-        match cut.into_iter().filter(|cut| *cut).count() {
-            0 => 1.0,
-            1 => CUT_ONCE,
-            _ => CUT_TWICE,
+        let side = box_px.x_min < EDGE_PX || box_px.x_max > width - EDGE_PX;
+        let below = box_px.y_max > height - EDGE_PX;
+        let shape = f64::from(box_px.width_px() / box_px.height_px());
+        let narrow = shape < whole.width_m / whole.height_m;
+        match (side, below) {
+            (false, false) => 1.0,
+            (true, true) => CUT_TWICE,
+            (true, false) if narrow => CUT_NARROW,
+            _ => CUT_ONCE,
         }
     }
 
