@@ -9,6 +9,7 @@
 //! foot; the answer is the mean of all explanations by their evidence, its covariance theirs and their
 //! disagreement.
 
+mod cut;
 mod edges;
 mod fit;
 mod level;

@@ -7,6 +7,7 @@ use roadwatch_core::{BoxPx, CameraModel, camera_model::Pixel};
 /// Left, top, right, bottom.
 pub(super) const EDGES: usize = 4;
 pub(super) const LEFT: usize = 0;
+pub(super) const TOP: usize = 1;
 pub(super) const RIGHT: usize = 2;
 pub(super) const BOTTOM: usize = 3;
 
@@ -72,6 +73,6 @@ impl SeenBox {
     }
 
     pub(super) fn height(&self) -> f64 {
-        self.edges[BOTTOM] - self.edges[1]
+        self.edges[BOTTOM] - self.edges[TOP]
     }
 }

@@ -116,6 +116,7 @@ impl View {
         let middle = Vector3::new(place.x, place.y, self.ground.height_m(place)) - self.eye;
         let middle = self.optical_from_base * middle;
         let outline = turned.outline(&middle, &self.optical_from_base)?;
+        let outline = outline.within(seen, (turned, &middle), &self.optical_from_base);
         let causes = self.causes(shape, &outline, (*yaw, place, distance_m));
         let covariance = causes.covariance(seen);
         let (precision, determinant) = inverse_and_determinant(&covariance);

@@ -38,10 +38,35 @@ pub(super) struct Turned {
 pub(super) struct Outline {
     /// Left, top, right, bottom on the plane at depth 1.
     pub(super) edges: Edges,
-    /// The hull's point on each edge.
-    points: [usize; EDGES],
+    /// Where the hull touches each edge.
+    pub(super) touches: [Touch; EDGES],
     /// Slope of each edge by the place of the point on it, in base_link.
     pub(super) slopes: [RowVector3<f64>; EDGES],
+}
+
+/// A point on the line from one point of the hull to another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touch {
+    pub(super) from: usize,
+    pub(super) to: usize,
+    /// 0 at the first, 1 at the other.
+    pub(super) share: f64,
+}
+
+impl Touch {
+    /// One of the hull's points.
+    pub(super) fn at(point: usize) -> Self {
+        Self {
+            from: point,
+            to: point,
+            share: 0.0,
+        }
+    }
+
+    fn of(self, coordinate: &[f64]) -> f64 {
+        let from = coordinate[self.from];
+        from + (coordinate[self.to] - from) * self.share
+    }
 }
 
 impl Solid {
@@ -91,8 +116,8 @@ impl Solid {
             std_dev.height_m / self.size.height_m,
         );
         let of_edge = |edge: usize| {
-            let at = outline.points[edge];
-            let (x, y, z) = (self.x[at], self.y[at], self.z[at]);
+            let touch = outline.touches[edge];
+            let [x, y, z] = [&self.x, &self.y, &self.z].map(|one| touch.of(one));
             let by = &outline.slopes[edge];
             let ahead = by.x * cos + by.y * sin;
             let left = by.y * cos - by.x * sin;
@@ -111,6 +136,12 @@ impl Solid {
 }
 
 impl Turned {
+    /// The points, from the footprint's middle.
+    pub(super) fn points(&self) -> impl Iterator<Item = Vector3<f64>> {
+        let points = self.x.iter().zip(&self.y).zip(&self.z);
+        points.map(|((&x, &y), &z)| Vector3::new(x, y, z).cast())
+    }
+
     /// The outline of the hull with its footprint's middle at `middle` in optical axes; `None` where part of
     /// it is behind the camera.
     #[inline(always)]
@@ -127,7 +158,7 @@ impl Turned {
         };
         Some(Outline {
             edges: Edges::from(bounds.map(f64::from)),
-            points,
+            touches: points.map(Touch::at),
             slopes: std::array::from_fn(slope),
         })
     }
