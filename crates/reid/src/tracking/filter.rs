@@ -57,7 +57,7 @@ const STANDING_TURN_STD: f64 = 0.02;
 const ON_THE_SPOT_TURN_STD: f64 = 0.7;
 /// Share of a fix's variance that counts as its noise. Less is new in every frame, about a tenth, but what is not changes within
 /// a second as the object moves, and a filter that took it for motion would follow it.
-const COUNTED_SHARE: f64 = 0.5;
+const COUNTED_SHARE: f64 = 0.35;
 /// What lasts changes by about this share of its deviation in a second, while the object is seen from elsewhere: as an
 /// apparent speed.
 const DRIFT_PER_S: f64 = 0.4;
