@@ -4,7 +4,10 @@ use crate::{playing::Played, view::View, world::World};
 use nalgebra::{UnitQuaternion, Vector3};
 use roadwatch_camera::RigDataset;
 use roadwatch_core::{BoxPx, CameraId, Rig, RigCamera};
-use roadwatch_lab::{Evaluation, LostImages, Report, Truth, TruthFilter, TruthObject, evaluate};
+use roadwatch_lab::{
+    Evaluation, LostImages, PublishedScene, Recording, Report, Truth, TruthFilter, TruthObject,
+    evaluate,
+};
 use serde_json::{Value, json};
 use std::{fs, path::Path};
 
@@ -28,7 +31,11 @@ pub fn score(world: &World, played: &Played, filter: &TruthFilter) -> Report {
         lost_images: LostImages::Count,
         frame_limit: None,
     };
-    evaluate(&evaluation, &played.cameras, &[], Vec::new())
+    let recording = Recording {
+        frames: played.cameras.clone(),
+        scenes: played.scenes.iter().map(PublishedScene::from).collect(),
+    };
+    evaluate(&evaluation, &recording, &[], Vec::new())
 }
 
 /// Writes `rig.toml`, `frames.jsonl`, `truth.jsonl` and a folder without images for each camera.

@@ -109,7 +109,7 @@ fn run(
         running.alive()
     );
     Played {
-        cameras: recorder.take(),
+        cameras: recorder.take().frames,
         scenes: scenes.take(),
         counts: rig.ids().map(|id| running.metrics().camera(id)).collect(),
     }

@@ -114,7 +114,8 @@ pub fn evaluate(
         |tested: &MethodUnderTest| (tested.method, figures(Estimator::By(tested.method)));
     let estimators = table.estimators().into_iter();
     let judge = evaluation.judge(&motion, &matched.sightings);
-    let scene_identity = IdentityScore::of(&judge.moments(&recording.scenes));
+    let moments = judge.moments(&recording.scenes);
+    let scene_identity = (!moments.is_empty()).then(|| IdentityScore::of(&moments));
     Report {
         frames: matched.perceived,
         frames_missing: matched.images - matched.perceived,

@@ -144,3 +144,53 @@ impl PublishedScene {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::IdentityScore;
+
+    /// One scene of a vehicle at the origin, with the objects that are there by the labels: scored ones and others.
+    fn moment(found: &[(u64, f64)], truths: &[(&str, f64)], others: &[f64]) -> Moment {
+        let scene = PublishedScene {
+            stamp: Timestamp::from_nanos(0),
+            base: Point::new(0.0, 0.0, 0.0),
+            objects: found
+                .iter()
+                .map(|&(id, x)| (id, Point::new(x, 0.0, 0.8)))
+                .collect(),
+        };
+        let place = |x: f64| Vector2::new(x, 0.0);
+        let truths: Vec<_> = truths.iter().map(|&(name, x)| (name, place(x))).collect();
+        let others: Vec<_> = others.iter().map(|&x| place(x)).collect();
+        let numbers = BTreeMap::from([("car", 0), ("van", 1)]);
+        scene.moment(&truths, &others, &BTreeSet::from([3, 4]), &numbers)
+    }
+
+    fn mota(moment: Moment) -> Option<f64> {
+        IdentityScore::of(&[moment]).mota
+    }
+
+    #[test]
+    fn an_object_that_stands_where_it_is_said_to_be_is_found() {
+        assert_eq!(mota(moment(&[(3, 11.0)], &[("car", 10.0)], &[])), Some(1.0));
+    }
+
+    #[test]
+    fn one_that_coasts_where_nothing_is_counts_against_it() {
+        let ghost = moment(&[(3, 10.0), (4, 30.0)], &[("car", 10.0)], &[]);
+        assert_eq!(mota(ghost), Some(0.0));
+    }
+
+    #[test]
+    fn one_that_stands_where_a_hidden_object_is_counts_neither_way() {
+        let hidden = moment(&[(3, 10.0), (4, 30.0)], &[("car", 10.0)], &[29.0]);
+        assert_eq!(mota(hidden), Some(1.0));
+    }
+
+    #[test]
+    fn identities_that_never_were_a_scored_object_are_detections_affair() {
+        let stranger = moment(&[(3, 10.0), (9, 30.0)], &[("car", 10.0)], &[]);
+        assert_eq!(mota(stranger), Some(1.0));
+    }
+}

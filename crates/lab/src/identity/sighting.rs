@@ -59,8 +59,10 @@ pub struct IdentityReport {
     /// All cameras together: one object is one, whoever sees it.
     #[serde(flatten)]
     pub rig: IdentityScore,
-    /// The published scenes: each object once, those included that no camera finds at the moment.
-    pub scene: IdentityScore,
+    /// The published scenes: each object once, those included that no camera finds at the moment. `None` where no scenes were
+    /// published, as of identities that were given afterwards.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scene: Option<IdentityScore>,
     /// Share of found objects, one for each round, that were found under more than one identity at once.
     pub duplicate_share: Option<f64>,
     /// Each camera by itself, added up.
@@ -84,7 +86,7 @@ impl IdentityReport {
         let rig: Vec<Moment> = rounds.values().map(|round| names.in_rig(round)).collect();
         Self {
             rig: IdentityScore::of(&rig),
-            scene: IdentityScore::default(),
+            scene: None,
             duplicate_share: duplicates(&rounds),
             per_camera: IdentityScore::of(&per_camera),
         }

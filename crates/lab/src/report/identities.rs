@@ -23,6 +23,8 @@ impl Report {
             ("rig".to_owned(), &identity.rig),
             ("per camera".to_owned(), &identity.per_camera),
         ];
+        let scene = identity.scene.iter();
+        rows.extend(scene.map(|scene| ("published scenes".to_owned(), scene)));
         for (name, baseline) in &self.identity_baselines {
             rows.push((format!("{name}, rig"), &baseline.rig));
             rows.push((format!("{name}, per camera"), &baseline.per_camera));
