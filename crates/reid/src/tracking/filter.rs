@@ -67,8 +67,8 @@ const BETTER_KNOWN_KEPT: f64 = 0.95;
 const WORSE_KNOWN_KEPT: f64 = 0.7;
 /// Of a speed's variance at first sight, this much is left to an object that is believed anew: it drives on.
 const RESTART_SHARE: f64 = 0.04;
-/// Boxes of one object jump by this much whatever their covariances say, metres.
-const LEAST_NOISE_M: f64 = 0.05;
+/// Places of one object jump by this much whatever their covariances say, metres: no car is quite the hull that stands for it.
+const LEAST_NOISE_M: f64 = 0.2;
 /// Sideways speed of the centre of something that moves along its heading, metres per second …
 const SLIP_M_S: f64 = 0.2;
 /// … and its share of the speed: headings of one object err alike from frame to frame, by some ten degrees.
