@@ -58,6 +58,8 @@ const ON_THE_SPOT_TURN_STD: f64 = 0.7;
 /// Share of a fix's variance that counts as its noise. Less is new in every frame, about a tenth, but what is not changes within
 /// a second as the object moves, and a filter that took it for motion would follow it.
 const COUNTED_SHARE: f64 = 0.35;
+/// The rest of it lasts.
+const LASTING_SHARE: f64 = 1.0 - COUNTED_SHARE;
 /// What lasts changes by about this share of its deviation in a second, while the object is seen from elsewhere: as an
 /// apparent speed.
 const DRIFT_PER_S: f64 = 0.4;
@@ -217,7 +219,7 @@ impl Filter {
 
     /// Covariance of the position, with what all fixes have in common.
     pub(super) fn position_covariance(&self) -> Matrix2<f64> {
-        self.covariance.fixed_view::<2, 2>(0, 0) + self.lasting
+        self.covariance.fixed_view::<2, 2>(0, 0) + self.lasting * LASTING_SHARE
     }
 
     /// Squared Mahalanobis distance of a fix some time later, as [`Filter::predict`] has it; infinite where it has none. Another
