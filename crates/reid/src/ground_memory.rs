@@ -80,10 +80,8 @@ impl GroundMemory {
         for (_, evidence) in gone {
             let (sum, at) = self.gone;
             let left = share_left(at, evidence.at, UNEVENNESS_LASTS);
-            self.gone = (
-                sum.blend(left, &evidence.unevenness, 1.0),
-                evidence.at.max(at),
-            );
+            let sum = sum.blend(left, &evidence.unevenness, 1.0).of_past();
+            self.gone = (sum, evidence.at.max(at));
         }
     }
 

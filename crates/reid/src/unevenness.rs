@@ -14,6 +14,10 @@ const MISTAKEN: f64 = 0.1;
 /// Mistaken readings scatter by this many deviations of the most uneven ground.
 const MISTAKEN_STD_DEVS: f64 = 2.0;
 
+/// What is past says no more than this against what is now, as a difference of log-likelihoods: a car park that is left for a hill
+/// is outvoted by a few cars there.
+const MOST_OF_PAST: f64 = 4.0;
+
 /// What readings say of each hypothesis: sums of log-likelihoods.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Unevenness(SVector<f64, HYPOTHESES>);
@@ -44,6 +48,12 @@ impl Unevenness {
     /// Both, each that many times.
     pub(crate) fn blend(&self, times: f64, other: &Self, other_times: f64) -> Self {
         Self(self.0 * times + other.0 * other_times)
+    }
+
+    /// The same, no surer than what is past may be.
+    pub(crate) fn of_past(&self) -> Self {
+        let difference = self.0.max() - self.0.min();
+        Self(self.0 * (MOST_OF_PAST / difference.max(MOST_OF_PAST)))
     }
 
     /// How uneven the ground is: root of the mean square over the hypotheses.
@@ -102,6 +112,23 @@ mod tests {
     fn objects_up_and_down_stand_on_uneven_ground() {
         let hills = [-0.5, 0.4, -0.3, 0.6, 0.45, -0.4];
         assert!((0.9..1.6).contains(&after(hills)), "{}", after(hills));
+    }
+
+    #[test]
+    fn a_level_hour_is_outvoted_by_a_few_objects_on_a_hill() {
+        let sum = |heights_m: &[f64]| {
+            let all = heights_m
+                .iter()
+                .map(|height_m| Unevenness::of(&reading(*height_m)));
+            all.fold(Unevenness::NOTHING, |sum, one| sum.blend(1.0, &one, 1.0))
+        };
+        let level = sum(&[0.05; 200]);
+        assert!(level.expected() < 0.2);
+        let past = level.of_past();
+        assert!(past.expected() < 0.7, "{}", past.expected());
+        let hill = sum(&[-0.5, 0.4, -0.45, 0.6]);
+        let both = past.blend(1.0, &hill, 1.0);
+        assert!(both.expected() > 0.8, "{}", both.expected());
     }
 
     #[test]
