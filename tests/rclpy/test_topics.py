@@ -98,7 +98,7 @@ def test_a_scene_has_each_object_once_whoever_saw_it(heard):
         for thing in message.objects:
             # All are where they are at the scene's moment, whenever they were seen.
             assert nanos(thing.header.stamp) == nanos(message.header.stamp) >= nanos(thing.seen_at)
-            assert thing.predicted == (thing.state == "coasting")
+            assert thing.predicted == (thing.state == "coasting" or thing.held)
             frames = [seen[camera].get(nanos(thing.seen_at)) for camera in thing.seen_by]
             frames = [frame for frame in frames if frame]
             if not frames or thing.predicted:
