@@ -7,11 +7,13 @@ from pathlib import Path
 
 import pytest
 
-# The daemon as a process is the black-box harness's.
-sys.path.append(str(Path(__file__).resolve().parents[1] / "rclpy"))
+ROOT = Path(__file__).resolve().parents[2]
+# The daemon as a process is the black-box harness's, and waiting the viewer's own tests'.
+sys.path += [str(ROOT / "tests/rclpy"), str(ROOT / "simulation/blender/tests")]
 
 from daemon import ONNX_RUNTIME, PROGRAM, Daemon
-from reader import Reader, until
+from daemons import until
+from reader import Reader
 
 
 def missing() -> str | None:
@@ -60,7 +62,7 @@ def daemon() -> Iterator[Daemon]:
 @pytest.fixture(scope="module")
 def address(daemon: Daemon) -> str:
     """Where the daemon offers its scene."""
-    line = until(lambda: daemon.said("scene stream:") or not daemon.is_running(), 15.0, "the scene stream")
+    line = until(lambda: daemon.said("scene stream:") or not daemon.is_running(), "the scene stream", 15.0)
     assert line is not True, daemon.lines
     return line[0].split()[-1]
 

@@ -1,15 +1,12 @@
-"""A plain reader of the scene stream, and waiting for what it brings about."""
+"""A plain reader of the scene stream."""
 
 from __future__ import annotations
 
 import json
 import socket
 import threading
-import time
-from collections.abc import Callable
-from typing import TypeVar
 
-Found = TypeVar("Found")
+from daemons import until
 
 
 class Reader:
@@ -34,7 +31,7 @@ class Reader:
     def wait_more(self, count: int, seconds: float = 10.0) -> None:
         """Until so many more scenes have come."""
         wanted = len(self.seqs) + count
-        until(lambda: len(self.seqs) >= wanted, seconds, f"{count} more scenes")
+        until(lambda: len(self.seqs) >= wanted, f"{count} more scenes", seconds)
 
     def has_every_scene(self) -> bool:
         """Whether no scene is missing from the first one to the last."""
@@ -45,13 +42,3 @@ class Reader:
         self._link.shutdown(socket.SHUT_RDWR)
         self._thread.join()
         self._link.close()
-
-
-def until(happened: Callable[[], Found], seconds: float, what: str) -> Found:
-    """Waits until something is true, and returns it."""
-    end_s = time.monotonic() + seconds
-    while time.monotonic() < end_s:
-        if found := happened():
-            return found
-        time.sleep(0.01)
-    raise AssertionError(f"{what} did not come within {seconds:.0f} s")

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from reader import until
+from daemons import until
 
 START_S = 60.0
 """More than a follower takes to come up beside a daemon and others that have all cores busy."""
@@ -49,7 +49,7 @@ class Following:
             self.lines.append(line)
 
     def wait_following(self) -> None:
-        until(lambda: any("following" in line for line in self.lines), START_S, "a follower")
+        until(lambda: any("following" in line for line in self.lines), "a follower", START_S)
 
     def kill(self) -> None:
         self.process.send_signal(signal.SIGKILL)
@@ -94,7 +94,7 @@ def test_a_killed_follower_disturbs_nobody_and_the_next_one_draws_the_scenes_of_
     # The demo's stamps are those of its recording.
     assert report["stamp_to_blender_ms"] is None
 
-    until(lambda: reader.seqs[-1] >= report["last_seq"], 5.0, "the last scene that was drawn")
+    until(lambda: reader.seqs[-1] >= report["last_seq"], "the last scene that was drawn", 5.0)
     assert reader.is_connected and reader.has_every_scene()
     # One line a second.
     assert daemon.is_running() and len(daemon.said("fps")) >= said + 2

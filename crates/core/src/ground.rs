@@ -37,7 +37,8 @@ pub struct GroundReading {
     pub place: Vector2<f64>,
     /// Height over the rig's ground plane, metres.
     pub height_m: f64,
-    /// Standard deviation of that, metres, for an object of its own size and a box of its own noise.
+    /// Standard deviation of that, metres, for an object of its own size and a box of its own noise; more where it is far from what
+    /// was expected.
     pub std_dev_m: f64,
     /// What it is off, metres, when all objects of the class are larger than expected by one standard
     /// deviation of their mean size: the same mistake in every reading.
@@ -45,7 +46,7 @@ pub struct GroundReading {
     /// What it is off, metres, when the ground on this camera's side of the rig deviates from the plane by one
     /// standard deviation: the same slope for everything that this camera sees.
     pub by_side_m: f64,
-    /// The part of `std_dev_m` that is of the box and the object's size alone, metres.
+    /// Standard deviation of that, metres, on even ground: by the box, the object's size and the ground's height.
     pub by_box_m: f64,
     /// Standard deviation of the height there, metres, of ground as uneven as it is configured to be.
     pub configured_m: f64,

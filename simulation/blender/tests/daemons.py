@@ -6,8 +6,11 @@ import socket
 import threading
 import time
 from collections.abc import Callable
+from typing import TypeVar
 
 DEADLINE_S = 10.0
+
+Found = TypeVar("Found")
 
 
 class Daemon:
@@ -50,11 +53,11 @@ class Daemon:
             self._link.close()
 
 
-def until(happened: Callable[[], object], what: str = "it") -> object:
+def until(happened: Callable[[], Found], what: str = "it", seconds: float = DEADLINE_S) -> Found:
     """Waits until something is true, and returns it."""
-    end_s = time.monotonic() + DEADLINE_S
+    end_s = time.monotonic() + seconds
     while time.monotonic() < end_s:
         if found := happened():
             return found
         time.sleep(0.01)
-    raise AssertionError(f"{what} did not happen within {DEADLINE_S:.0f} s")
+    raise AssertionError(f"{what} did not happen within {seconds:.0f} s")

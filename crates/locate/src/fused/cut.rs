@@ -1,9 +1,10 @@
 //! What the image's border leaves of an outline: the top and the foot of the part that is inside.
 
 use super::{
-    edges::{BOTTOM, EDGES, LEFT, RIGHT, SeenBox, TOP},
-    solid::{Outline, Touch, Turned},
+    edges::{BOTTOM, LEFT, RIGHT, SeenBox, TOP},
+    solid::{MOST_POINTS, Outline, Touch, Turned},
 };
+use arrayvec::ArrayVec;
 use nalgebra::{Matrix3, RowVector3, Vector3};
 
 /// The border on one side: at `at` on the plane at depth 1, the image on the side of greater values or of lesser ones.
@@ -13,18 +14,25 @@ struct Border {
     side: f64,
 }
 
-/// A point of the hull's surface, in optical axes.
+/// A point of the hull's surface.
 #[derive(Clone, Copy)]
 struct Candidate {
     touch: Touch,
-    height: f64,
-    /// Slope of `height` by the place of that point.
+    /// In optical axes.
+    point: Vector3<f64>,
+    /// Slope of its height on the plane at depth 1, by the place of that point of the surface.
     slope: RowVector3<f64>,
 }
 
 impl Border {
     fn shows(self, point: &Vector3<f64>) -> bool {
         (point.x - self.at * point.z) * self.side >= 0.0
+    }
+}
+
+impl Candidate {
+    fn height(&self) -> f64 {
+        self.point.y / self.point.z
     }
 }
 
@@ -42,20 +50,15 @@ impl Outline {
             seen.cut[edge].then_some(Border { at, side })
         };
         let borders = [border(LEFT, 1.0), border(RIGHT, -1.0)];
-        if borders.iter().flatten().next().is_none() {
+        if borders.iter().all(Option::is_none) {
             return self;
         }
-        let candidates = candidates(turned, middle, borders);
-        let by_height = |a: &&Candidate, b: &&Candidate| a.height.total_cmp(&b.height);
-        let (Some(top), Some(foot)) = (
-            candidates.iter().min_by(by_height),
-            candidates.iter().max_by(by_height),
-        ) else {
+        let Some((top, foot)) = top_and_foot(turned, middle, borders) else {
             return self;
         };
         let mut within = self;
         for (edge, found) in [(TOP, top), (BOTTOM, foot)] {
-            within.edges[edge] = found.height;
+            within.edges[edge] = found.height();
             within.touches[edge] = found.touch;
             within.slopes[edge] = found.slope * optical_from_base;
         }
@@ -63,30 +66,60 @@ impl Outline {
     }
 }
 
-/// Points of the hull inside the borders, and where its lines cross them: its top and its foot are among those.
-fn candidates(
+/// Of what is inside the borders; `None` when nothing is. They are among the hull's points inside, and where lines between two of its
+/// points cross a border.
+fn top_and_foot(
     turned: &Turned,
     middle: &Vector3<f64>,
-    borders: [Option<Border>; EDGES / 2],
-) -> Vec<Candidate> {
-    let points: Vec<Vector3<f64>> = turned.points().map(|point| point + middle).collect();
+    borders: [Option<Border>; 2],
+) -> Option<(Candidate, Candidate)> {
+    let points: ArrayVec<Vector3<f64>, MOST_POINTS> =
+        turned.points().map(|point| point + middle).collect();
+    let mut ends: Option<(Candidate, Candidate)> = None;
+    let mut take = |one: Candidate| {
+        let (top, foot) = ends.get_or_insert((one, one));
+        if one.height() < top.height() {
+            *top = one;
+        }
+        if one.height() > foot.height() {
+            *foot = one;
+        }
+    };
     let shown = |point: &Vector3<f64>| borders.iter().flatten().all(|border| border.shows(point));
-    let mut candidates = Vec::new();
-    for (from, point) in points.iter().enumerate().filter(|(_, point)| shown(point)) {
-        candidates.push(Candidate {
-            touch: Touch::at(from),
-            height: point.y / point.z,
-            slope: RowVector3::new(0.0, 1.0, -point.y / point.z) / point.z,
-        });
-        for border in borders.iter().flatten() {
-            let outside = points.iter().enumerate();
-            let outside = outside.filter(|(_, other)| !border.shows(other));
-            let crossings =
-                outside.map(|(to, other)| crossing(*border, (from, point), (to, other)));
-            candidates.extend(crossings);
+    for (number, point) in points.iter().enumerate() {
+        if shown(point) {
+            take(corner(number, point));
         }
     }
-    candidates
+    for (border, other) in [(borders[0], borders[1]), (borders[1], borders[0])] {
+        let Some(border) = border else {
+            continue;
+        };
+        let (inside, outside): (Side<'_>, Side<'_>) = points
+            .iter()
+            .enumerate()
+            .partition(|(_, point)| border.shows(point));
+        for &from in &inside {
+            for &to in &outside {
+                let crossing = crossing(border, from, to);
+                if other.is_none_or(|other| other.shows(&crossing.point)) {
+                    take(crossing);
+                }
+            }
+        }
+    }
+    ends
+}
+
+/// Points of the hull on one side of a border, by their numbers.
+type Side<'a> = ArrayVec<(usize, &'a Vector3<f64>), MOST_POINTS>;
+
+fn corner(number: usize, point: &Vector3<f64>) -> Candidate {
+    Candidate {
+        touch: Touch::at(number),
+        point: *point,
+        slope: RowVector3::new(0.0, 1.0, -point.y / point.z) / point.z,
+    }
 }
 
 /// Where the line from a point inside to one outside crosses the border. When the object moves, the crossing moves along the
@@ -104,7 +137,7 @@ fn crossing(
     let along = (line.y - height * line.z) / across;
     Candidate {
         touch: Touch { from, to, share },
-        height,
+        point,
         slope: RowVector3::new(-along, 1.0, along * border.at - height) / point.z,
     }
 }

@@ -10,6 +10,8 @@ use roadwatch_core::SizeLwh;
 const NEAREST_DEPTH_M: f32 = 0.3;
 /// Bits that hold a point's number: more than any hull has, and few enough for a hundredth of a pixel.
 const NUMBER: i32 = 63;
+/// Of a hull.
+pub(super) const MOST_POINTS: usize = NUMBER as usize + 1;
 
 /// Length, width, height and heading: what the hull's points depend on beside the object's place.
 const SHAPE_CAUSES: usize = 4;
@@ -72,11 +74,7 @@ impl Touch {
 impl Solid {
     pub(super) fn new(spec: &HullSpec, size: SizeLwh) -> Self {
         let points = spec.points(size);
-        debug_assert!(
-            points.len() <= NUMBER as usize + 1,
-            "{} points",
-            points.len()
-        );
+        debug_assert!(points.len() <= MOST_POINTS, "{} points", points.len());
         Self {
             x: points.iter().map(|point| point.x).collect(),
             y: points.iter().map(|point| point.y).collect(),
