@@ -5,6 +5,7 @@ mod duplicates;
 mod filter;
 mod found;
 mod heading;
+mod lasting;
 mod object;
 mod options;
 mod publish;

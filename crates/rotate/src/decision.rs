@@ -30,8 +30,8 @@ const LEAST_FOREST_STD_RAD: f64 = 0.1;
 ///
 /// Candidates are the headings that the object's place allows ([`Location::headings`]), each sharpened by the forest
 /// where both mean the same, and what the forest says by itself, should the place's all be wrong. Each weighs as much
-/// as its place, the forest, the model's direct look and the heading that the object had agree with it; each of these
-/// may fail.
+/// as its place, the forest, the model's direct look and the axis of the heading that the object had agree with it; each
+/// of these may fail. Front and back are what this look shows: who remembers headings weighs look against look.
 #[must_use]
 pub fn decide(
     location: &Location,
@@ -46,9 +46,15 @@ pub fn decide(
     };
     let mut candidates: ArrayVec<_, MOST_CANDIDATES> = of_place(location, &forest);
     candidates.extend(of_forest(&forest, location.headings.is_empty()));
+    let axis = before.map(|before| Heading {
+        flip_probability: 0.5,
+        ..*before
+    });
     let weigh = |(candidate, weight): &(Heading, f64)| {
         let by_look = (1.0 - FACING_FAILS) * facing(row, candidate, ray) + FACING_FAILS;
-        let by_memory = before.map_or(1.0, |before| likelihood(before, candidate, PRIOR_FAILS));
+        let by_memory = axis
+            .as_ref()
+            .map_or(1.0, |axis| likelihood(axis, candidate, PRIOR_FAILS));
         weight * by_look * by_memory
     };
     let weights: ArrayVec<f64, MOST_CANDIDATES> = candidates.iter().map(weigh).collect();

@@ -103,6 +103,8 @@ pub(super) fn fix(located: &Located, view: &View<'_>, ego: &Ego) -> Option<(Fix,
     let center = ego.steady_from_base * location.position;
     let covariance = (ego.steady_from_base * location.covariance).matrix;
     let fix = Fix {
+        camera: view.camera,
+        eye: view.eye,
         place: center.coords.coords.xy(),
         covariance: covariance.fixed_view::<2, 2>(0, 0) * view.doubt(located),
     };

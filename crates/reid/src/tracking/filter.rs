@@ -1,7 +1,9 @@
-//! What is believed of one object: an extended Kalman filter over place, motion, heading and what its box gets wrong.
+//! What is believed of one object: an extended Kalman filter over place, motion and heading, which takes into account that fixes
+//! share most of their errors.
 
+use super::lasting::Lasting;
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector3};
-use roadwatch_core::angle::wrapped;
+use roadwatch_core::{CameraId, angle::wrapped};
 use std::f64::consts::PI;
 
 /// Numbers of the state.
@@ -55,22 +57,10 @@ const TURN_LASTS_S: f64 = 3.0;
 const STANDING_TURN_STD: f64 = 0.02;
 /// Turn rates of something that turns on the spot, radians per second.
 const ON_THE_SPOT_TURN_STD: f64 = 0.7;
-/// Share of a fix's variance that counts as its noise. Less is new in every frame, about a tenth, but what is not changes within
-/// a second as the object moves, and a filter that took it for motion would follow it.
-const COUNTED_SHARE: f64 = 0.35;
-/// The rest of it lasts.
-const LASTING_SHARE: f64 = 1.0 - COUNTED_SHARE;
-/// What lasts changes by about this share of its deviation in a second, while the object is seen from elsewhere: as an
-/// apparent speed.
-const DRIFT_PER_S: f64 = 0.4;
-/// Of what lasts, this much is kept from fix to fix when the new fix is worse, as when the image's edge cuts the object …
-const BETTER_KNOWN_KEPT: f64 = 0.95;
-/// … and this much when it is better.
-const WORSE_KNOWN_KEPT: f64 = 0.7;
 /// Of a speed's variance at first sight, this much is left to an object that is believed anew: it drives on.
 const RESTART_SHARE: f64 = 0.04;
-/// Places of one object jump by this much whatever their covariances say, metres: no car is quite the hull that stands for it.
-const LEAST_NOISE_M: f64 = 0.2;
+/// Places of one object are off by this much whatever their covariances say, metres: no car is quite the hull that stands for it.
+const LEAST_STD_M: f64 = 0.15;
 /// Sideways speed of the centre of something that moves along its heading, metres per second …
 const SLIP_M_S: f64 = 0.2;
 /// … and its share of the speed: headings of one object err alike from frame to frame, by some ten degrees.
@@ -94,10 +84,8 @@ pub(super) struct Filter {
     pub(super) heading_known: bool,
     /// Log-odds that front is front, by what was seen of it.
     pub(super) front: f64,
-    /// Covariance of what the last fixes have in common: the object's size, the ground under it, what hides it. No number of
-    /// frames averages it out (on labelled drives the autocorrelation of errors of standing objects stays above 0.7 for two
-    /// seconds), so the state's does not hold it, and it is added to what is published.
-    lasting: Matrix2<f64>,
+    /// What the state owes to errors that fixes have in common.
+    lasting: Lasting,
     /// Fixes in a row that surprised.
     surprises: u32,
 }
@@ -105,6 +93,10 @@ pub(super) struct Filter {
 /// Where an object was seen: in the steady frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Fix {
+    /// Who saw it …
+    pub(super) camera: CameraId,
+    /// … from where.
+    pub(super) eye: Vector2<f64>,
     /// Where the box says it is.
     pub(super) place: Vector2<f64>,
     /// Covariance of that.
@@ -112,8 +104,9 @@ pub(super) struct Fix {
 }
 
 impl Fix {
-    fn noise(&self) -> Matrix2<f64> {
-        self.covariance + Matrix2::identity() * (LEAST_NOISE_M * LEAST_NOISE_M)
+    /// Covariance of all that it gets wrong.
+    pub(super) fn spread(&self) -> Matrix2<f64> {
+        self.covariance + Matrix2::identity() * (LEAST_STD_M * LEAST_STD_M)
     }
 }
 
@@ -124,12 +117,13 @@ pub(super) fn left_of(direction: Vector2<f64>) -> Vector2<f64> {
 impl Filter {
     /// What one box says, of something of which nothing was known.
     pub(super) fn new(fix: &Fix, mobility: Mobility) -> Self {
+        let (lasting, errors) = Lasting::of(fix);
         let mut mean = State::zeros();
         mean.fixed_rows_mut::<2>(0).copy_from(&fix.place);
         let mut covariance = StateCovariance::zeros();
         covariance
             .fixed_view_mut::<2, 2>(0, 0)
-            .copy_from(&fix.noise());
+            .copy_from(&errors.covariance());
         for axis in 0..2 {
             covariance[(VELOCITY + axis, VELOCITY + axis)] = mobility.speed_std_m_s.powi(2);
             covariance[(ACCELERATION + axis, ACCELERATION + axis)] =
@@ -144,7 +138,7 @@ impl Filter {
             heading_known: false,
             front: 0.0,
             surprises: 0,
-            lasting: fix.covariance,
+            lasting,
         }
     }
 
@@ -156,10 +150,10 @@ impl Filter {
         self.mean.fixed_rows::<2>(VELOCITY).into_owned()
     }
 
-    /// Covariance of the velocity, with how fast what fixes have in common changes.
     pub(super) fn velocity_covariance(&self) -> Matrix2<f64> {
-        self.covariance.fixed_view::<2, 2>(VELOCITY, VELOCITY)
-            + self.lasting * (DRIFT_PER_S * DRIFT_PER_S)
+        self.covariance
+            .fixed_view::<2, 2>(VELOCITY, VELOCITY)
+            .into_owned()
     }
 
     /// Where it will be, cheaply.
@@ -215,20 +209,22 @@ impl Filter {
         covariance[(TURN, TURN)] += grown(turning, turn_std * turn_std);
         self.mean = mean;
         self.covariance = covariance;
+        self.lasting.predict(&step, seconds);
     }
 
-    /// Covariance of the position, with what all fixes have in common.
+    /// Covariance of the position.
     pub(super) fn position_covariance(&self) -> Matrix2<f64> {
-        self.covariance.fixed_view::<2, 2>(0, 0) + self.lasting * LASTING_SHARE
+        self.covariance.fixed_view::<2, 2>(0, 0).into_owned()
     }
 
-    /// Squared Mahalanobis distance of a fix some time later, as [`Filter::predict`] has it; infinite where it has none. Another
-    /// camera's fixes do not err alike, so all of the fix's own covariance counts.
+    /// Squared Mahalanobis distance of a fix some time later, as [`Filter::predict`] has it; infinite where it has none.
     pub(super) fn surprise_after(&self, seconds: f64, fix: &Fix) -> f64 {
         let seconds = seconds.max(0.0);
         // Place, velocity and acceleration are what a later place is made of.
         let step = Vector3::new(1.0, seconds, seconds * seconds / 2.0);
-        let mut covariance = fix.noise();
+        let errors = self.lasting.errors(fix);
+        let shared = self.lasting.shared_after(seconds, &step, &errors);
+        let mut covariance = errors.covariance() + shared + shared.transpose();
         for (one, share) in step.iter().enumerate() {
             for (other, other_share) in step.iter().enumerate() {
                 let part = self.covariance.fixed_view::<2, 2>(2 * one, 2 * other);
@@ -238,11 +234,16 @@ impl Filter {
         squared(&(fix.place - self.position_after(seconds)), &covariance)
     }
 
-    /// Takes in where it was seen.
+    /// Takes in where it was seen: corrects the state by what is new in the fix, knowing that the rest is what earlier fixes got
+    /// wrong too. That rest is taken into account and not estimated, as a size, a slope and a hidden edge cannot be told apart
+    /// (Schmidt 1966; Bar-Shalom, Li and Kirubarajan 2001, section 8.2.4).
     pub(super) fn correct(&mut self, fix: &Fix) {
+        let errors = self.lasting.errors(fix);
         let innovation = fix.place - self.position();
-        let spread = self.covariance.fixed_columns::<2>(0).into_owned();
-        let mut covariance = spread.fixed_rows::<2>(0) + fix.noise() * COUNTED_SHARE;
+        let shared = self.lasting.shared_with(&errors);
+        let spread = self.covariance.fixed_columns::<2>(0) + shared;
+        let mut covariance =
+            spread.fixed_rows::<2>(0) + shared.fixed_rows::<2>(0).transpose() + errors.covariance();
         let excess = squared(&innovation, &covariance) / MOST_SURPRISE;
         self.surprises = if excess > 1.0 { self.surprises + 1 } else { 0 };
         if self.surprises >= MOST_SURPRISES {
@@ -257,12 +258,7 @@ impl Filter {
         let gain = spread * inverse;
         self.mean += gain * innovation;
         self.covariance -= gain * spread.transpose();
-        let lasting = fix.covariance;
-        let kept = match lasting.trace() > self.lasting.trace() {
-            true => BETTER_KNOWN_KEPT,
-            false => WORSE_KNOWN_KEPT,
-        };
-        self.lasting = self.lasting * kept + lasting * (1.0 - kept);
+        self.lasting.correct(&gain, &errors);
         self.settle();
     }
 
@@ -288,6 +284,7 @@ impl Filter {
         let gain = spread / ((by * spread)[0] + variance);
         self.mean += gain * innovation;
         self.covariance -= gain * spread.transpose();
+        self.lasting.correct_by(by, &gain);
         self.settle();
     }
 
@@ -320,6 +317,7 @@ impl Filter {
         self.covariance.row_mut(HEADING).fill(0.0);
         self.covariance.column_mut(HEADING).fill(0.0);
         self.covariance[(HEADING, HEADING)] = variance;
+        self.lasting.forget(HEADING);
         self.heading_known = true;
     }
 

@@ -25,6 +25,9 @@ const LEAST_WALK_M_S: f64 = 0.6;
 const LEAST_SPEED_STD_DEVS: f64 = 3.0;
 /// Share of moving vehicles that move forwards.
 const FORWARDS: f64 = 0.97;
+/// Variance of a velocity against what is believed, where it decides between front and back: what comes out from behind
+/// something seems to move.
+const VELOCITY_DOUBT: f64 = 2.0;
 /// Steepness with which a logistic function comes nearest to the normal distribution's.
 const NORMAL_BY_LOGISTIC: f64 = 1.702;
 /// Heading of something that moves, against its velocity, radians: tyres slip, people look around.
@@ -102,7 +105,7 @@ impl Filter {
         let (sin, cos) = self.mean[HEADING].sin_cos();
         let along = Vector2::new(cos, sin);
         let speed = self.velocity().dot(&along);
-        let variance = along.dot(&(self.velocity_covariance() * along));
+        let variance = along.dot(&(self.velocity_covariance() * along)) * VELOCITY_DOUBT;
         let beyond = (speed.abs() - LEAST_SPEED_M_S).max(0.0).copysign(speed);
         let std_devs = beyond / variance.max(f64::EPSILON).sqrt();
         let ahead = 1.0 / (1.0 + (-NORMAL_BY_LOGISTIC * std_devs).exp());
