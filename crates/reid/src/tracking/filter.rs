@@ -34,7 +34,7 @@ pub(super) struct Mobility {
 /// Cars drive 14 m/s in cities, brake by half a metre per second squared and follow bends of sixteen metres and more, most of the time; they
 /// move along their heading. (Bar-Shalom, Li and Kirubarajan 2001, sections 6.2 and 8.2, on accelerations that fade.)
 pub(super) const VEHICLE: Mobility = Mobility {
-    speed_std_m_s: 6.0,
+    speed_std_m_s: 10.0,
     acceleration_std_m_s2: 0.6,
     acceleration_lasts_s: 1.2,
     curvature_std: Some(0.06),
@@ -62,7 +62,7 @@ const RESTART_SHARE: f64 = 0.04;
 /// Places of one object are off by this much whatever their covariances say, metres: no car is quite the hull that stands for it.
 const LEAST_STD_M: f64 = 0.15;
 /// Sideways speed of the centre of something that moves along its heading, metres per second …
-const SLIP_M_S: f64 = 0.2;
+const SLIP_M_S: f64 = 0.3;
 /// … and its share of the speed: headings of one object err alike from frame to frame, by some ten degrees.
 const SLIP_SHARE: f64 = 0.17;
 /// Sideways motion beyond this many squared deviations is a wrong heading: it counts for that much less.
@@ -305,7 +305,10 @@ impl Filter {
         by[VELOCITY] = -sin;
         by[VELOCITY + 1] = cos;
         by[HEADING] = -along;
-        let slip = SLIP_M_S.hypot(SLIP_SHARE * along);
+        // Headings that waver say nothing of a speed that nobody knows yet.
+        let ahead = Vector2::new(cos, sin);
+        let unknown = ahead.dot(&(self.velocity_covariance() * ahead)).max(0.0);
+        let slip = SLIP_M_S.hypot(SLIP_SHARE * along.hypot(unknown.sqrt()));
         let spread = (by * self.covariance * by.transpose())[0] + slip * slip;
         let excess = (across * across / spread / MOST_SLIP_SURPRISE).max(1.0);
         self.correct_by(&by, -across, slip * slip + spread * (excess - 1.0));
