@@ -144,9 +144,8 @@ impl Candidates<'_> {
                     // Where it is nobody knows, so that it is in the image what it was.
                     None => (overlap >= LEAST_OVERLAP).then_some(0.0),
                 };
-                let cost = by_place.map(|squared| {
-                    squared.min(MOST_SURPRISE) + class + NO_OVERLAP * (1.0 - f64::from(overlap))
-                });
+                let cost = by_place
+                    .map(|squared| squared + class + NO_OVERLAP * (1.0 - f64::from(overlap)));
                 pairs.extend(cost.filter(|cost| *cost < NEW_OBJECT).map(|cost| Pair {
                     row,
                     column,
@@ -159,12 +158,12 @@ impl Candidates<'_> {
 
     /// How much a place surprises; `None` when too much.
     fn by_place(&self, fix: &Fix, object: &Object, overlap: f32) -> Option<f64> {
-        let squared = object.surprise_at(self.view.at, fix);
+        let (squared, vague) = object.surprise_at(self.view.at, fix);
         let most = match overlap >= SURE_OVERLAP {
             true => MOST_SURPRISE_OVERLAPPING,
             false => MOST_SURPRISE,
         };
-        (squared <= most).then_some(squared)
+        (squared <= most).then_some(squared.min(MOST_SURPRISE) + vague)
     }
 
     /// Around a place.

@@ -217,8 +217,9 @@ impl Filter {
         self.covariance.fixed_view::<2, 2>(0, 0).into_owned()
     }
 
-    /// Squared Mahalanobis distance of a fix some time later, as [`Filter::predict`] has it; infinite where it has none.
-    pub(super) fn surprise_after(&self, seconds: f64, fix: &Fix) -> f64 {
+    /// Squared Mahalanobis distance of a fix some time later, as [`Filter::predict`] has it, infinite where it has none; and how
+    /// much less is known of the fix than of itself, as the logarithm of the determinants' ratio.
+    pub(super) fn surprise_after(&self, seconds: f64, fix: &Fix) -> (f64, f64) {
         let seconds = seconds.max(0.0);
         // Place, velocity and acceleration are what a later place is made of.
         let step = Vector3::new(1.0, seconds, seconds * seconds / 2.0);
@@ -231,7 +232,9 @@ impl Filter {
                 covariance += part * (share * other_share);
             }
         }
-        squared(&(fix.place - self.position_after(seconds)), &covariance)
+        let squared = squared(&(fix.place - self.position_after(seconds)), &covariance);
+        let vague = covariance.determinant() / errors.covariance().determinant();
+        (squared, vague.max(1.0).ln())
     }
 
     /// Takes in where it was seen: corrects the state by what is new in the fix, knowing that the rest is what earlier fixes got

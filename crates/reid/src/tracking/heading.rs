@@ -6,7 +6,7 @@ use roadwatch_core::{Heading, angle::wrapped};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Looks at one object see much the same, so each counts for this share of what it says of front and back.
-const LOOK_SHARE: f64 = 0.4;
+const LOOK_SHARE: f64 = 0.6;
 /// Nobody is surer than this of front and back by looks alone (log-odds; 1 in 20): less sure than by motion.
 const MOST_FRONT: f64 = 3.0;
 /// No look is surer than this, whatever it says.
@@ -39,14 +39,16 @@ pub(super) struct Look {
     pub(super) heading_rad: f64,
     pub(super) std_dev_rad: f64,
     pub(super) flip_probability: f64,
+    /// How much less it says than it claims: of an object that the image's edges cut off, it shows little.
+    pub(super) doubt: f64,
 }
 
 impl Filter {
     /// Takes in what a frame shows of the heading.
     pub(super) fn look(&mut self, look: &Look) {
         let flip = look.flip_probability.clamp(LEAST_FLIP, 0.5);
-        let says = LOOK_SHARE * ((1.0 - flip) / flip).ln();
-        let variance = look.std_dev_rad.powi(2) + LEAST_LOOK_STD.powi(2);
+        let says = LOOK_SHARE * ((1.0 - flip) / flip).ln() / look.doubt;
+        let variance = (look.std_dev_rad.powi(2) + LEAST_LOOK_STD.powi(2)) * look.doubt;
         if !self.heading_known {
             self.set_heading(look.heading_rad, variance);
             self.front = says;

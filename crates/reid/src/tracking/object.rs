@@ -308,7 +308,7 @@ impl Object {
     }
 
     /// How much a place at a moment surprises, in squared deviations.
-    pub(super) fn surprise_at(&self, at: Timestamp, fix: &Fix) -> f64 {
+    pub(super) fn surprise_at(&self, at: Timestamp, fix: &Fix) -> (f64, f64) {
         let step = self.step_before(at);
         let seconds = at.saturating_since(step.at).as_secs_f64();
         step.after.surprise_after(seconds, fix)

@@ -160,12 +160,13 @@ impl Tracker {
 }
 
 /// What a frame shows of an object's heading: only what it shows itself.
-fn look(observed: &Oriented, ego_yaw_rad: f64) -> Option<Look> {
+fn look(observed: &Oriented, view: &View<'_>, ego_yaw_rad: f64) -> Option<Look> {
     let kept = observed.heading?;
     kept.age.is_zero().then_some(Look {
         heading_rad: kept.heading.yaw_rad + ego_yaw_rad,
         std_dev_rad: kept.heading.std_dev_rad,
         flip_probability: kept.heading.flip_probability,
+        doubt: view.doubt(&observed.located),
     })
 }
 
@@ -285,7 +286,7 @@ impl Tracker {
                 observed,
                 evidence: Evidence {
                     fix,
-                    look: look(observed, yaw_rad),
+                    look: look(observed, view, yaw_rad),
                     over_ground,
                 },
                 height_m: height_m.or(known_m).unwrap_or_default(),

@@ -79,7 +79,8 @@ impl<'a> View<'a> {
         }
     }
 
-    /// How much more the variance of a place is than its box alone says: what the image's edges cut off says nothing.
+    /// How much more the variance of a place or a heading is than its box alone says: what the image's edges cut off says
+    /// nothing.
     pub(super) fn doubt(&self, located: &Located) -> f64 {
         let (box_px, whole) = (&located.detection.box_px, located.location.size);
         let size = self.rig_camera.model.size;
