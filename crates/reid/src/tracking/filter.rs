@@ -31,13 +31,13 @@ pub(super) struct Mobility {
     pub(super) curvature_std: Option<f64>,
 }
 
-/// Cars drive 14 m/s in cities, brake by half a metre per second squared and follow bends of sixteen metres and more, most of the time; they
+/// Cars drive 14 m/s in cities and faster outside, brake by half a metre per second squared and follow bends of ten metres and more; they
 /// move along their heading. (Bar-Shalom, Li and Kirubarajan 2001, sections 6.2 and 8.2, on accelerations that fade.)
 pub(super) const VEHICLE: Mobility = Mobility {
     speed_std_m_s: 10.0,
     acceleration_std_m_s2: 0.6,
     acceleration_lasts_s: 1.2,
-    curvature_std: Some(0.06),
+    curvature_std: Some(0.1),
 };
 /// People walk 1.4 m/s and turn on the spot.
 pub(super) const WALKER: Mobility = Mobility {
@@ -52,7 +52,7 @@ const STANDING_SHARE: f64 = 0.15;
 /// At this speed an object moves, metres per second.
 const MOVING_M_S: f64 = 1.5;
 /// How long a turn lasts, seconds.
-const TURN_LASTS_S: f64 = 3.0;
+const TURN_LASTS_S: f64 = 8.0;
 /// Turn rates of something that stands, radians per second.
 const STANDING_TURN_STD: f64 = 0.02;
 /// Turn rates of something that turns on the spot, radians per second.
@@ -64,7 +64,7 @@ const LEAST_STD_M: f64 = 0.15;
 /// Sideways speed of the centre of something that moves along its heading, metres per second …
 const SLIP_M_S: f64 = 0.3;
 /// … and its share of the speed: headings of one object err alike from frame to frame, by some ten degrees.
-const SLIP_SHARE: f64 = 0.17;
+const SLIP_SHARE: f64 = 0.2;
 /// Sideways motion beyond this many squared deviations is a wrong heading: it counts for that much less.
 const MOST_SLIP_SURPRISE: f64 = 4.0;
 /// A heading no better known than this says nothing of where something moves, radians.

@@ -6,10 +6,10 @@ use roadwatch_core::CameraId;
 
 /// Share of a fix's variance that is new in every frame. On labelled drives, real and simulated, errors of one object from frame
 /// to frame agree to 0.65 to 0.95.
-const FRESH_SHARE: f64 = 0.35;
+const FRESH_SHARE: f64 = 0.2;
 /// How long the rest lasts, seconds: the same errors half a second to three seconds apart agree to 0.8 to 0.3, the less the
 /// faster the view of the object changes.
-const LASTS_S: f64 = 1.5;
+const LASTS_S: f64 = 1.0;
 /// What lasts is no worse than the best fix says, as a share of the distance; a worse one adds something of its own. This much
 /// of that is believed to last after all.
 const WORSE_SHARE: f64 = 0.02;
