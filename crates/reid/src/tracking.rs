@@ -9,6 +9,7 @@ mod lasting;
 mod object;
 mod options;
 mod publish;
+mod standing;
 mod tracker;
 mod view;
 

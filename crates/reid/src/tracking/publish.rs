@@ -16,7 +16,10 @@ use roadwatch_core::{
 impl Tracker {
     /// What is believed of an object at a moment, `ego` where the vehicle is then.
     pub(super) fn motion(&self, object: &Object, at: Timestamp, ego: &Ego) -> Motion {
-        let belief = object.belief_at(at);
+        let mut belief = object.belief_at(at);
+        if object.is_over_ground() {
+            belief = belief.or_standing();
+        }
         let base_from_steady = ego.steady_from_base.inverse();
         let yaw_rad = ego.steady_from_base.yaw_rad();
         let turn = Rotation2::new(-yaw_rad);
