@@ -156,14 +156,15 @@ impl Candidates<'_> {
         assign(seen.len(), self.objects.len(), &pairs)
     }
 
-    /// How much a place surprises; `None` when too much.
+    /// What it costs that an object is at a place; `None` when it cannot be.
     fn by_place(&self, fix: &Fix, object: &Object, overlap: f32) -> Option<f64> {
-        let (squared, vague) = object.surprise_at(self.view.at, fix);
         let most = match overlap >= SURE_OVERLAP {
             true => MOST_SURPRISE_OVERLAPPING,
             false => MOST_SURPRISE,
         };
-        (squared <= most).then_some(squared.min(MOST_SURPRISE) + vague)
+        let surprise = object.surprise_at(self.view.at, fix, most)?;
+        // An object of which little is known fits every fix; that is no merit.
+        Some(surprise.squared.min(MOST_SURPRISE) + surprise.vague)
     }
 
     /// Around a place.

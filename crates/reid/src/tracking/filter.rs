@@ -110,6 +110,15 @@ impl Fix {
     }
 }
 
+/// How little a fix is what was expected.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Surprise {
+    /// Mahalanobis distance.
+    pub(super) squared: f64,
+    /// How much less is known of the fix than of itself: logarithm of the ratio of determinants.
+    pub(super) vague: f64,
+}
+
 pub(super) fn left_of(direction: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-direction.y, direction.x)
 }
@@ -217,24 +226,34 @@ impl Filter {
         self.covariance.fixed_view::<2, 2>(0, 0).into_owned()
     }
 
-    /// Squared Mahalanobis distance of a fix some time later, as [`Filter::predict`] has it, infinite where it has none; and how
-    /// much less is known of the fix than of itself, as the logarithm of the determinants' ratio.
-    pub(super) fn surprise_after(&self, seconds: f64, fix: &Fix) -> (f64, f64) {
+    /// How much a fix surprises some time later, as [`Filter::predict`] has it; `None` when by more than `most` squared deviations.
+    pub(super) fn surprise_after(&self, seconds: f64, fix: &Fix, most: f64) -> Option<Surprise> {
         let seconds = seconds.max(0.0);
         // Place, velocity and acceleration are what a later place is made of.
         let step = Vector3::new(1.0, seconds, seconds * seconds / 2.0);
-        let errors = self.lasting.errors(fix);
-        let shared = self.lasting.shared_after(seconds, &step, &errors);
-        let mut covariance = errors.covariance() + shared + shared.transpose();
+        let mut place = Matrix2::zeros();
         for (one, share) in step.iter().enumerate() {
             for (other, other_share) in step.iter().enumerate() {
                 let part = self.covariance.fixed_view::<2, 2>(2 * one, 2 * other);
-                covariance += part * (share * other_share);
+                place += part * (share * other_share);
             }
         }
-        let squared = squared(&(fix.place - self.position_after(seconds)), &covariance);
-        let vague = covariance.determinant() / errors.covariance().determinant();
-        (squared, vague.max(1.0).ln())
+        let innovation = fix.place - self.position_after(seconds);
+        // Two errors, however they go together, have at most twice their variances; most fixes are out of this reach.
+        let reach = 2.0 * (place.trace() + fix.spread().trace());
+        if innovation.norm_squared() > most * reach {
+            return None;
+        }
+        let errors = self.lasting.errors(fix);
+        let shared = self.lasting.shared_after(seconds, &step, &errors);
+        let own = errors.covariance();
+        let covariance = place + own + shared + shared.transpose();
+        let squared = squared(&innovation, &covariance);
+        let vague = covariance.determinant() / own.determinant();
+        (squared <= most).then(|| Surprise {
+            squared,
+            vague: vague.max(1.0).ln(),
+        })
     }
 
     /// Takes in where it was seen: corrects the state by what is new in the fix, knowing that the rest is what earlier fixes got

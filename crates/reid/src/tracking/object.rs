@@ -1,7 +1,7 @@
 //! One tracked object: its belief through the last moments, so that what comes late finds its place.
 
 use super::{
-    filter::{Filter, Fix, HEADING, Mobility, VEHICLE, WALKER},
+    filter::{Filter, Fix, HEADING, Mobility, Surprise, VEHICLE, WALKER},
     heading::Look,
     view::{Glimpse, Solid, View},
 };
@@ -307,11 +307,11 @@ impl Object {
         belief
     }
 
-    /// How much a place at a moment surprises, in squared deviations.
-    pub(super) fn surprise_at(&self, at: Timestamp, fix: &Fix) -> (f64, f64) {
+    /// How much a place at a moment surprises; `None` when by more than `most` squared deviations.
+    pub(super) fn surprise_at(&self, at: Timestamp, fix: &Fix, most: f64) -> Option<Surprise> {
         let step = self.step_before(at);
         let seconds = at.saturating_since(step.at).as_secs_f64();
-        step.after.surprise_after(seconds, fix)
+        step.after.surprise_after(seconds, fix, most)
     }
 
     /// Where it will be at a moment, without the cost of how well that is known.
