@@ -269,15 +269,14 @@ mod tests {
     }
 
     #[test]
-    fn the_heading_an_object_had_decides_where_parts_do_not() {
+    fn the_axis_an_object_had_decides_where_parts_do_not_and_its_sense_stays_open() {
         let ray = RayAngle::towards(1.0, 0.0);
         let unsure = (&Row::default(), &turned(90.0, 0.5));
         let before = heading(-172.0, 0.1);
         let found = decide(&location(&FOUR), ray, unsure, Some(&before));
-        assert!(
-            (found.yaw_rad.to_degrees() + 170.0).abs() < 6.0,
-            "{found:?}"
-        );
+        let turned_deg = (found.yaw_rad.to_degrees() - 10.0).rem_euclid(180.0);
+        assert!(turned_deg.min(180.0 - turned_deg) < 6.0, "{found:?}");
+        assert!(found.flip_probability > 0.4, "{found:?}");
     }
 
     #[test]
