@@ -139,3 +139,64 @@ impl Lasting {
         self.with_state.row_mut(number).fill(0.0);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{
+        super::filter::{Filter, VEHICLE},
+        *,
+    };
+
+    /// Along the ray a metre, across it a tenth, with its axes turned a little out of it.
+    fn fix(place: Vector2<f64>, scale: f64) -> Fix {
+        let (sin, cos) = (place.y.atan2(place.x) + 0.1).sin_cos();
+        let turn = Matrix2::new(cos, -sin, sin, cos);
+        Fix {
+            camera: CameraId(0),
+            eye: Vector2::zeros(),
+            place,
+            covariance: turn * Matrix2::new(scale, 0.0, 0.0, 0.01 * scale) * turn.transpose(),
+        }
+    }
+
+    #[test]
+    fn what_lasts_and_what_is_new_are_all_that_a_fix_gets_wrong() {
+        let fix = fix(Vector2::new(12.0, 16.0), 1.0);
+        let (lasting, errors) = Lasting::of(&fix);
+        assert!((errors.covariance().trace() - fix.spread().trace()).abs() < 1e-9);
+        // Of one that claims more, the more is its own.
+        let worse = lasting.errors(&Fix {
+            covariance: fix.covariance * 9.0,
+            ..fix.clone()
+        });
+        let lasts = |errors: &Errors| (errors.lasting * errors.lasting.transpose()).trace();
+        assert!((1.0..1.2).contains(&(lasts(&worse) / lasts(&errors))));
+        assert!(worse.fresh.trace() > 8.0 * errors.fresh.trace());
+    }
+
+    #[test]
+    fn a_second_of_fixes_does_not_average_out_what_they_share() {
+        let place = Vector2::new(20.0, 0.0);
+        let mut filter = Filter::new(&fix(place, 1.0), VEHICLE);
+        for _ in 0..10 {
+            filter.predict(0.1);
+            filter.correct(&fix(place, 1.0));
+        }
+        let variance = filter.position_covariance()[(0, 0)];
+        assert!((0.5..1.0).contains(&variance), "{variance}");
+    }
+
+    #[test]
+    fn covariances_stay_covariances_whatever_is_claimed() {
+        let mut filter = Filter::new(&fix(Vector2::new(60.0, 5.0), 30.0), VEHICLE);
+        for step in 1..200_u32 {
+            filter.predict(0.05);
+            let at = f64::from(step);
+            let place = Vector2::new(60.0 - 0.25 * at, 5.0 + at.sin());
+            filter.correct(&fix(place, [0.2, 3.0, 40.0][step as usize % 3]));
+            filter.keep_to_heading();
+            let eigenvalues = filter.covariance.symmetric_eigenvalues();
+            assert!(eigenvalues.min() > -1e-9, "{step}: {eigenvalues}");
+        }
+    }
+}
