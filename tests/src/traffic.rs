@@ -125,10 +125,11 @@ pub fn turning() -> Scenario {
         start: pose(0.0, 0.0, 0.0),
         legs: vec![
             Leg::straight(1.5, 6.0),
+            // It ends with a frame: labels know where the vehicle is then, and go straight from one such moment to the next.
             Leg {
-                secs: std::f64::consts::FRAC_PI_2 / 0.5,
+                secs: 3.2,
                 speed_m_s: 6.0,
-                turn_rad_s: 0.5,
+                turn_rad_s: std::f64::consts::FRAC_PI_2 / 3.2,
             },
             Leg::straight(3.0, 6.0),
         ],

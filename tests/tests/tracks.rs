@@ -75,21 +75,13 @@ fn speeds_over_ground_are_known_whoever_moves() {
         let (_, _, report) = played(scenario, imperfect());
         let moving = report.motion.moving;
         assert!(moving.n > 50, "{name}: {moving:?}");
-        // Half a metre per second; more of one car that comes straight on while the vehicle turns: here boxes err anew in every
-        // frame, which those of images do not and filters do not expect. Where that turn begins, poses between poses are off, by
-        // which parked cars seem to move in the labels.
-        let (most_m_s, most_nees) = match name {
-            "turning" => (0.75, 3.0),
-            _ => (0.5, 1.5),
-        };
+        // Half a metre per second, a little more while the vehicle itself turns.
+        let most_m_s = if name == "turning" { 0.6 } else { 0.5 };
         assert!(
             moving.p50_m_s.expect("speeds") < most_m_s,
             "{name}: {moving:?}"
         );
-        assert!(
-            moving.nees.expect("speeds") < most_nees,
-            "{name}: {moving:?}"
-        );
+        assert!(moving.nees.expect("speeds") < 1.5, "{name}: {moving:?}");
     }
     // Parked cars passed at ten metres per second stand.
     let (_, _, report) = played(traffic::parked_rows(), imperfect());

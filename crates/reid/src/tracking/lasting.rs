@@ -111,14 +111,13 @@ impl Lasting {
         step: &Vector3<f64>,
         errors: &Errors,
     ) -> Matrix2<f64> {
-        let shared = if errors.camera == self.camera {
-            1.0
-        } else {
-            0.0
-        };
+        // Another camera's fixes need not err alike.
+        if errors.camera != self.camera {
+            return Matrix2::zeros();
+        }
         let part = |at: usize| self.with_state.fixed_rows::<2>(2 * at) * step[at];
         let place: Matrix2<f64> = part(0) + part(1) + part(2);
-        place * errors.lasting.transpose() * (shared * (-seconds / LASTS_S).exp())
+        place * errors.lasting.transpose() * (-seconds / LASTS_S).exp()
     }
 
     /// After a fix corrected the place by a gain.

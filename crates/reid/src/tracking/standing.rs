@@ -12,11 +12,11 @@ const STANDING_M_S: f64 = 0.1;
 impl Filter {
     /// The belief, if it may also stand: the mean and covariance of both, by their chances. The chance that it stands is the
     /// density of the velocity at nothing, against what it was before anything was seen (Savage and Dickey; Dickey 1971).
-    pub(super) fn or_standing(&self) -> Self {
+    pub(super) fn or_standing(mut self) -> Self {
         let velocity = self.velocity();
         let spread = self.velocity_covariance() + Matrix2::identity() * STANDING_M_S.powi(2);
         let Some(inverse) = spread.try_inverse() else {
-            return self.clone();
+            return self;
         };
         let squared = velocity.dot(&(inverse * velocity));
         let stands = STANDING * (-0.5 * squared).exp() / spread.determinant().sqrt();
@@ -28,11 +28,10 @@ impl Filter {
         gain.row_mut(HEADING).fill(0.0);
         gain.row_mut(TURN).fill(0.0);
         let step = gain * velocity;
-        let mut both = self.clone();
-        both.mean -= step * chance;
-        both.covariance +=
+        self.mean -= step * chance;
+        self.covariance +=
             (step * step.transpose() * (1.0 - chance) - gain * spread * gain.transpose()) * chance;
-        both
+        self
     }
 }
 
@@ -64,7 +63,7 @@ mod tests {
     #[test]
     fn what_stays_where_it_is_stands_and_its_place_is_better_known_for_it() {
         let filter = seen(0.0, 4.0);
-        let both = filter.or_standing();
+        let both = filter.clone().or_standing();
         assert!(both.velocity().norm() <= filter.velocity().norm());
         let trace = |filter: &Filter| filter.position_covariance().trace();
         assert!(trace(&both) < trace(&filter));
@@ -75,7 +74,7 @@ mod tests {
     #[test]
     fn nobody_who_moves_is_said_to_stand() {
         let filter = seen(5.0, 4.0);
-        let both = filter.or_standing();
+        let both = filter.clone().or_standing();
         assert!((both.velocity() - filter.velocity()).norm() < 1e-6);
         assert!((both.covariance - filter.covariance).norm() < 1e-6);
     }
@@ -83,7 +82,7 @@ mod tests {
     #[test]
     fn at_first_sight_nobody_knows() {
         let filter = seen(0.0, 0.0);
-        let both = filter.or_standing();
+        let both = filter.clone().or_standing();
         let trace = |filter: &Filter| filter.velocity_covariance().trace();
         assert!(trace(&both) > 0.9 * trace(&filter));
     }
